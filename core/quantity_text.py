@@ -15,12 +15,6 @@ LONGEST_POWER: Final = 12
 """Numbers beyond this power of ten are no measurements, and are written with it."""
 
 
-HOURS_PER_DAY: Final = 24.0
-
-DAYS_IN_HOURS: Final = 2.0
-"""Shorter periods are told in hours."""
-
-
 def plain(value: float, digits: int = 3, *, with_commas: bool = True) -> str:
     """Return a number rounded to significant digits, without a power of ten; large ones with commas.
 
@@ -48,24 +42,6 @@ def plain(value: float, digits: int = 3, *, with_commas: bool = True) -> str:
     commas = "," if with_commas and abs(rounded) >= MOST_WITHOUT_PREFIX else ""
     text = f"{rounded:{commas}.{max(decimals, 0)}f}"
     return text.rstrip("0").rstrip(".") if decimals > 0 else text
-
-
-def period(days: float) -> str:
-    """Return a period ahead in words: an hour, hours below two days, and days.
-
-    Parameters
-    ----------
-    days : float
-        How long it is [d].
-
-    Returns
-    -------
-    str
-        The period, such as 34 hours or 9 days.
-    """
-    if days * HOURS_PER_DAY < 1.0:
-        return "an hour"
-    return f"{days * HOURS_PER_DAY:.0f} hours" if days < DAYS_IN_HOURS else f"{days:.0f} days"
 
 
 def with_unit(value: float, unit: str, digits: int = 3) -> str:

@@ -9,7 +9,7 @@ import structlog
 from sqlalchemy.exc import SQLAlchemyError
 from structlog.typing import FilteringBoundLogger
 
-from core.units import NANOSECONDS_PER_SECOND
+from core.units import NANOSECONDS_PER_SECOND, SECONDS_PER_HOUR, SECONDS_PER_MINUTE
 from service.access.bearer_secrets import LONGEST, digest_of
 from service.access.permissions import Permission, permissions_of
 from service.configuration.access import AccessSettings
@@ -18,9 +18,6 @@ from service.storage.records import ApiToken, Role
 from service.timing.database_silence import database_trouble, does_not_answer
 
 log: FilteringBoundLogger = structlog.get_logger(__name__)
-
-SECONDS_PER_MINUTE = 60
-SECONDS_PER_HOUR = 3600
 
 NOTED_AGAIN_NS = 60 * NANOSECONDS_PER_SECOND
 """That a session or a token is used is written down once in so long, not at each request."""

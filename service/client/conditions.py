@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from rich.text import Text
 
 from core.quantity_text import plain
+from core.terms import phrase
 from service.client.rest_client import Document, ServiceError
 from service.client.verdicts import level, percent, to_the_second
 
@@ -33,7 +34,7 @@ def cause(condition: Document) -> str:
         return ""
     candidates = condition.get("candidates")
     kinds = [str(one) for one in candidates] if isinstance(candidates, Sequence) else []
-    words = " or ".join(one.replace("-", " ") for one in kinds or [kind])
+    words = " or ".join(phrase(one) for one in kinds or [kind])
     return f"{words} {condition['phase'] or ''}".strip()
 
 

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Final, Protocol
 
 from core.condition.kinds import Kind, State
-from core.quantity_text import period
+from core.time_words import time_ahead
 from core.units import NANOSECONDS_PER_DAY
 from service.condition.staleness import Missing
 
@@ -124,7 +124,7 @@ def expected(
     if middle_ns <= now_ns:
         by = f"{day_of(middle_ns)}{between}"
         return f"It was expected to reach {level} by {by}, counted from the latest record."
-    ahead = period((middle_ns - now_ns) / NANOSECONDS_PER_DAY)
+    ahead = time_ahead((middle_ns - now_ns) / NANOSECONDS_PER_DAY)
     return f"It likely reaches {level} in about {ahead}, on {day_of(middle_ns)}{between}."
 
 

@@ -1,7 +1,5 @@
 """The trend of a motor as a picture for mails."""
 
-from zoneinfo import ZoneInfo
-
 import structlog
 
 from service.pictures.png import PictureError, png
@@ -33,9 +31,7 @@ def trend_of(repository: Repository, motor: str, time_zone: str) -> bytes | None
         return None
     forecast = document.get("forecast")
     limit = forecast.get("limit") if isinstance(forecast, dict) else None
-    svg = trend_picture(
-        motor, points, limit=limit if isinstance(limit, float) else None, zone=ZoneInfo(time_zone)
-    )
+    svg = trend_picture(motor, points, limit=limit if isinstance(limit, float) else None, zone=time_zone)
     try:
         return png(svg)
     except PictureError as error:

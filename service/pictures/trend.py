@@ -2,10 +2,10 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from datetime import UTC, datetime, tzinfo
 from math import isfinite
+from zoneinfo import ZoneInfo
 
-from core.units import NANOSECONDS_PER_SECOND
+from core.time_words import clock
 from service.pictures.looks import PRINT, Look
 from service.pictures.marks import mark_states
 from service.pictures.svg import Drawing
@@ -59,7 +59,7 @@ def trend_picture(
     detectable: float | None = None,
     until_ns: int | None = None,
     marks: Sequence[TrendMark] = (),
-    zone: tzinfo = UTC,
+    zone: str = "UTC",
     look: Look = PRINT,
 ) -> str:
     """Return the picture as SVG.
@@ -90,11 +90,11 @@ def trend_picture(
     return drawing.svg()
 
 
-def _told(points: Sequence[TrendPoint], limit: float | None, zone: tzinfo) -> str:
+def _told(points: Sequence[TrendPoint], limit: float | None, zone: str) -> str:
     if not points:
         return "No record yet"
     latest = points[-1]
-    told = f"Last {100 * latest.value:.2f} % on {_time(latest, zone)}, {latest.state}"
+    told = f"Last {100 * latest.value:.2f} % on {clock(latest.time_ns, zone)}, {latest.state}"
     told += f"; highest {100 * max(point.value for point in points):.2f} %"
     return told if limit is None else f"{told}; limit {100 * limit:.3g} %"
 
@@ -126,12 +126,12 @@ def _frame(
     return _Frame(first_ns, max(last_ns, first_ns + 60_000_000_000), top)
 
 
-def _axes(drawing: Drawing, frame: _Frame, zone: tzinfo, look: Look) -> None:
+def _axes(drawing: Drawing, frame: _Frame, zone: str, look: Look) -> None:
     for level in figure_ticks(0.0, frame.top, 5):
         y = frame.y(level)
         drawing.line(LEFT, y, WIDTH - RIGHT, y, stroke=look.line)
         drawing.text(LEFT - 6, y + 4, f"{100 * level:.4g} %", anchor="end", fill=look.muted)
-    for time_ns, words in time_ticks(frame.first_ns, frame.last_ns, 7, zone):
+    for time_ns, words in time_ticks(frame.first_ns, frame.last_ns, 7, ZoneInfo(zone)):
         x = frame.x(time_ns)
         drawing.line(x, HEIGHT - BOTTOM, x, HEIGHT - BOTTOM + 4, stroke=look.muted)
         if LEFT + 10 <= x <= WIDTH - RIGHT - 14:
@@ -171,14 +171,9 @@ def _curve(drawing: Drawing, frame: _Frame, points: Sequence[TrendPoint], look: 
     mark_states(drawing, look, marked[-1:], 4.0)
 
 
-def _latest(drawing: Drawing, point: TrendPoint, zone: tzinfo, look: Look) -> None:
-    words = f"{100 * point.value:.2f} % at {_time(point, zone)}"
+def _latest(drawing: Drawing, point: TrendPoint, zone: str, look: Look) -> None:
+    words = f"{100 * point.value:.2f} % at {clock(point.time_ns, zone)}"
     drawing.text(WIDTH - RIGHT, 20, words, anchor="end", fill=look.ink)
-
-
-def _time(point: TrendPoint, zone: tzinfo) -> str:
-    at = datetime.fromtimestamp(point.time_ns // NANOSECONDS_PER_SECOND, zone)
-    return f"{at:%Y-%m-%d %H:%M} {at.tzname()}"
 
 
 def thinned(points: Sequence[TrendPoint], most: int = MOST_POINTS) -> Sequence[TrendPoint]:

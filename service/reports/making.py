@@ -5,13 +5,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from core.error_words import nearest, shown
+from core.time_words import clock, day
 from service.reports.contents.alarms import alarms_document
 from service.reports.contents.fleet import fleet_document
 from service.reports.contents.motor import motor_document
 from service.reports.document import ReportDocument
 from service.reports.errors import ReportRequestError
 from service.reports.source import ReportSource
-from service.reports.times import Period, clock, month_of, period_until
+from service.reports.times import Period, month_of, period_until
 from service.reports.typesetting.pdf import pdf
 from service.reports.wanted import AlarmsReport, FleetReport, MotorReport, ReportFormat, WantedReport
 from service.reports.workbook import workbook
@@ -47,7 +48,7 @@ def document_of(source: ReportSource, wanted: WantedReport) -> ReportDocument:
     match wanted:
         case FleetReport(days, until_ns, sites):
             _require_sites(source, sites)
-            title = f"Fleet, {days} report of {clock(until_ns, zone)[:10]}"
+            title = f"Fleet, {days} report of {day(until_ns, zone)}"
             return fleet_document(source, period_until(days, until_ns, zone), title, sites)
         case MotorReport(motor, until_ns):
             return motor_document(source, motor, until_ns)

@@ -4,11 +4,11 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 from core.condition.kinds import Kind, State
+from core.time_words import clock, day
 from service.condition.staleness import Missing, missing, stale_after_ns
 from service.condition.wording import advice_now, expected, finding, level_ahead, since
 from service.reports.figures import share
 from service.reports.source import ReportSource
-from service.reports.times import clock
 from service.storage import Repository
 from service.storage.records import ConditionFigures, ConditionPoint, MotorHealth
 
@@ -16,7 +16,6 @@ PAGE = 500
 URGENCY = {State.FAULT: 0, State.WATCH: 1, State.UNKNOWN: 2, State.HEALTHY: 3}
 UNKNOWN = ConditionFigures(state=State.UNKNOWN, kind=Kind.NONE)
 NOT_RUNNING, STALE = "not running", "no recent record"
-DAY_END = len("2026-11-23")
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +76,7 @@ class ReportedMotor:
         if not isinstance(days, list | tuple) or len(days) != 3 or ahead is None or self.as_of_ns is None:
             return ""
         words = level_ahead(ahead, limit, share)
-        return expected(words, self.as_of_ns, days, now_ns, lambda time_ns: clock(time_ns, zone)[:DAY_END])
+        return expected(words, self.as_of_ns, days, now_ns, lambda time_ns: day(time_ns, zone))
 
     @property
     def _forecast(self) -> Mapping[str, object]:

@@ -1,14 +1,13 @@
-"""Times of reports: the period that one is about, and how times and spans are written in it."""
+"""The times that reports are about: days, weeks, months, and the minute until which one tells."""
 
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from typing import Literal
 from zoneinfo import ZoneInfo
 
-from core.units import NANOSECONDS_PER_DAY, NANOSECONDS_PER_SECOND
+from core.units import NANOSECONDS_PER_SECOND, SECONDS_PER_MINUTE
 from service.reports.errors import ReportRequestError
 
-NANOSECONDS_PER_HOUR = 3600 * NANOSECONDS_PER_SECOND
 FIRST_YEAR, LAST_YEAR = 1970, 2200
 
 FleetPeriod = Literal["daily", "weekly"]
@@ -53,22 +52,8 @@ def month_at(time_ns: int, zone: str) -> str:
 
 def minute_before(time_ns: int) -> int:
     """Return the latest full minute: a report is of a minute, so that it can be made again."""
-    minute_ns = 60 * NANOSECONDS_PER_SECOND
+    minute_ns = SECONDS_PER_MINUTE * NANOSECONDS_PER_SECOND
     return time_ns // minute_ns * minute_ns
-
-
-def clock(time_ns: int, zone: str) -> str:
-    """Return a time to the minute as the clocks of a zone show it, with the zone's short name."""
-    at = datetime.fromtimestamp(time_ns // NANOSECONDS_PER_SECOND, ZoneInfo(zone))
-    return f"{at:%Y-%m-%d %H:%M} {at.tzname()}"
-
-
-def span(length_ns: int) -> str:
-    """Return a length of time in words: days, hours or minutes."""
-    for unit_ns, word in ((NANOSECONDS_PER_DAY, "day"), (NANOSECONDS_PER_HOUR, "hour")):
-        if length_ns >= 2 * unit_ns:
-            return f"{length_ns // unit_ns} {word}s"
-    return f"{max(length_ns, 0) // (60 * NANOSECONDS_PER_SECOND)} min"
 
 
 def _ns(at: datetime) -> int:

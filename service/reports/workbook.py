@@ -9,11 +9,11 @@ from xlsxwriter.format import Format
 from xlsxwriter.worksheet import Worksheet
 
 from core.error_words import one_line
+from core.time_words import clock
 from core.units import NANOSECONDS_PER_DAY, NANOSECONDS_PER_SECOND
 from service.exports.excel_file import CUT, FIRST_DAY_NS, MOST_CHARACTERS
 from service.exports.formula_texts import begins_a_formula
 from service.reports.document import Cell, ColumnKind, Facts, ReportDocument, Table, Words
-from service.reports.times import clock
 
 FORMATS = {
     ColumnKind.SHARE: "0.00%",

@@ -1,12 +1,12 @@
 """Figures, times and terms as pages write them."""
 
 from collections.abc import Mapping, Sequence
-from datetime import UTC, datetime
-from enum import StrEnum
 from math import isfinite
 from typing import Final
 
+from core.terms import phrase
 from core.time_stamps import rfc3339
+from core.time_words import clock, day, duration
 from core.units import NANOSECONDS_PER_SECOND
 
 __all__ = ["age", "day", "duration", "figure", "interval", "percent", "phrase", "rfc3339", "size", "utc"]
@@ -23,10 +23,6 @@ STATE_WORDS: Final[Mapping[str, str]] = {
     "not-running": "not running",
 }
 """What people read beside the icon of a motor's state."""
-
-PERIODS: Final = ((86_400 * 365.25, "year"), (86_400.0, "day"), (3600.0, "hour"), (60.0, "minute"))
-MANY: Final = 2.0
-"""A period is told in the largest unit that it has at least so often."""
 
 
 def percent(share: float | None, digits: int = 2) -> str:
@@ -56,23 +52,7 @@ def figure(value: float | None, unit: str = "", digits: int = 3) -> str:
 
 def utc(time_ns: int | None) -> str:
     """Return a time to the minute, in UTC."""
-    if time_ns is None:
-        return NOTHING
-    return f"{datetime.fromtimestamp(time_ns // NANOSECONDS_PER_SECOND, UTC):%Y-%m-%d %H:%M} UTC"
-
-
-def day(time_ns: int) -> str:
-    """Return the day of a time, in UTC."""
-    return f"{datetime.fromtimestamp(time_ns // NANOSECONDS_PER_SECOND, UTC):%Y-%m-%d}"
-
-
-def duration(seconds: float) -> str:
-    """Return a period in words, rounded down: "3 days"."""
-    for length, unit in PERIODS:
-        if seconds >= MANY * length:
-            return f"{int(seconds / length)} {unit}s"
-    whole = max(int(seconds), 0)
-    return "1 second" if whole == 1 else f"{whole} seconds"
+    return NOTHING if time_ns is None else clock(time_ns)
 
 
 def age(time_ns: int | None, now_ns: int) -> str:
@@ -89,8 +69,3 @@ def size(number: int) -> str:
         if number >= factor:
             return f"{number / factor:.3g} {unit}"
     return f"{number} bytes"
-
-
-def phrase(term: StrEnum | str) -> str:
-    """Return a term of the API, such as shorted-turns, as people write it."""
-    return str(term).replace("-", " ").replace("_", " ")

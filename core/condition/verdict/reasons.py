@@ -10,8 +10,8 @@ from core.condition.filter.state import START
 from core.condition.forecast.forecast import Forecast
 from core.condition.kinds import Kind
 from core.condition.severity import FEW, Interval, standing_stays_a_fault, stands_out, stays_a_fault
-from core.quantity_text import period
 from core.time_stamps import SECONDS_END, rfc3339
+from core.time_words import time_ahead
 
 MOST_CERTAIN: Final = 99.0
 """Highest probability that is told as a figure [%]."""
@@ -128,7 +128,7 @@ def _of_forecast(forecast: Forecast) -> Iterator[str]:
     if forecast.days is None:
         yield f"whether the level grows is not certain: it may never reach {_percent(forecast.limit)}"
     else:
-        low, mid, high = (period(days) for days in forecast.days)
+        low, mid, high = (time_ahead(days) for days in forecast.days)
         yield (
             f"the level grows by {100.0 * growth:.3f} % a day; it reaches {_percent(forecast.limit)} in "
             f"about {mid}, in eight of ten cases between {low} and {high}"

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 
+from core.terms import phrase
 from core.time_stamps import rfc3339
 from service.configuration.notifications import NotificationSettings
 from service.notifications.hours import local
@@ -75,7 +76,7 @@ def _overview(facts: Mapping[str, object]) -> Section:
 
 def _motor(facts: Mapping[str, object], has_picture: bool, number: int) -> Section:
     state = str(facts["state"])
-    cause = str(facts["kind"]).replace("-", " ")
+    cause = phrase(str(facts["kind"]))
     phase = f" in phase {facts['phase']}" if facts.get("phase") else ""
     lines = []
     mu_f, interval = facts.get("mu_f"), facts.get("mu_f_ci95")

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from core.error_words import one_line
+from core.terms import phrase
 
 CALLS = ("raised", "reopened")
 """Somebody has to act on these."""
@@ -40,7 +41,7 @@ class ToldAlarm:
     @property
     def words(self) -> str:
         """Return the kind in words."""
-        return self.kind.replace("-", " ")
+        return phrase(self.kind)
 
     @property
     def calls(self) -> bool:

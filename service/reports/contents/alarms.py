@@ -3,9 +3,12 @@
 from collections import Counter
 from collections.abc import Collection, Sequence
 
+from core.terms import phrase
+from core.time_words import clock, duration
+from core.units import NANOSECONDS_PER_SECOND
 from service.reports.document import Block, Cell, Column, ColumnKind, Facts, ReportDocument, Table
 from service.reports.source import ReportSource
-from service.reports.times import Period, clock, span
+from service.reports.times import Period
 from service.storage import Repository
 from service.storage.records import AlarmCall
 from service.storage.states import AlarmPriority
@@ -72,19 +75,21 @@ def _summary(calls: Sequence[AlarmCall], number: int) -> Facts:
     taken = sorted(
         call.acknowledged_ns - call.called_ns for call in calls if call.acknowledged_ns is not None
     )
-    middle = f"; half of them within {span(taken[len(taken) // 2])}" if taken else ""
+    half = ""
+    if taken:
+        half = f"; half of them within {duration(taken[len(taken) // 2] / NANOSECONDS_PER_SECOND)}"
     standing = sum(call.gone_ns is None for call in calls)
     return Facts(
         [
             ("calls", f"{number}: {by_priority}" if calls else "none"),
-            ("acknowledged", f"{len(taken)} of {len(calls)}{middle}"),
+            ("acknowledged", f"{len(taken)} of {len(calls)}{half}"),
             ("cause not gone by the end", str(standing)),
         ]
     )
 
 
 def _causes(calls: Sequence[AlarmCall]) -> Table:
-    causes = Counter((call.alarm.kind.value.replace("-", " "), _about(call)) for call in calls)
+    causes = Counter((phrase(call.alarm.kind), call.alarm.place) for call in calls)
     often = sorted(causes.items(), key=lambda one: (-one[1], one[0]))
     rows = [(*cause, number) for cause, number in often[:MOST_CAUSES]]
     return Table("causes", CAUSES, rows, left_out=max(len(often) - MOST_CAUSES, 0))
@@ -101,16 +106,11 @@ def _row(call: AlarmCall) -> Sequence[Cell]:
     return (
         call.called_ns,
         alarm.priority.value,
-        _about(call),
-        f"{alarm.kind.value.replace('-', ' ')}: {alarm.reason}",
+        call.alarm.place,
+        f"{phrase(alarm.kind)}: {alarm.reason}",
         call.acknowledged_ns,
         call.acknowledged_by,
         call.gone_ns,
         call.comment,
-        call.state.value.replace("-", " "),
+        phrase(call.state),
     )
-
-
-def _about(call: AlarmCall) -> str:
-    alarm = call.alarm
-    return alarm.motor or alarm.ied or alarm.site or "the service"

@@ -4,13 +4,14 @@ from collections import Counter
 from collections.abc import Collection, Sequence
 
 from core.condition.kinds import State
+from core.time_words import clock
 from service.condition.wording import cause
 from service.reports.contents.alarms import alarm_table
 from service.reports.document import Block, Column, ColumnKind, Facts, ReportDocument, Table, Words
 from service.reports.figures import interval, state_words
 from service.reports.motors import STALE, ReportedMotor, reported_motors
 from service.reports.source import ReportSource
-from service.reports.times import Period, clock
+from service.reports.times import Period
 from service.storage import Repository
 from service.storage.records import ConditionChange
 from service.storage.states import LinkState

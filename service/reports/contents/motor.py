@@ -1,10 +1,12 @@
 """The report of one motor: how it is, how it came to be so, and what it is."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import partial
 from typing import Protocol, TypeVar
 
 from core.machines.parameters import Motor
+from core.terms import phrase
+from core.time_words import clock
 from service.condition.motor_data import motor_known
 from service.condition.wording import cause
 from service.reports.contents.motor_pictures import motor_pictures
@@ -13,7 +15,6 @@ from service.reports.document import Block, Column, ColumnKind, Content, Facts, 
 from service.reports.figures import NOTHING, interval, share
 from service.reports.motors import ReportedMotor, reported
 from service.reports.source import ReportSource
-from service.reports.times import clock
 from service.storage import Repository
 from service.storage.records import Alarm, MotorVersion, Page, StartEntry
 from service.storage.records.history import SeenRecord
@@ -150,7 +151,7 @@ def _pictures(
     starts = repository.starts(motor.name, limit=MOST_LISTED).items
     marks = sorted(
         [
-            *((one.time_ns, f"{one.kind.value.replace('-', ' ')}: {one.reason}") for one in events),
+            *((one.time_ns, f"{phrase(one.kind)}: {one.reason}") for one in events),
             *((one.time_ns, "start") for one in starts),
         ]
     )
@@ -190,8 +191,8 @@ def _alarms(repository: Repository, name: str, until_ns: int) -> Table:
 
 
 def _alarm(alarm: Alarm) -> Sequence[str | int]:
-    words = f"{alarm.kind.value.replace('-', ' ')}: {alarm.reason}"
-    return alarm.raised_ns, alarm.priority.value, words, alarm.state.value.replace("-", " ")
+    words = f"{phrase(alarm.kind)}: {alarm.reason}"
+    return alarm.raised_ns, alarm.priority.value, words, phrase(alarm.state)
 
 
 def _notes(repository: Repository, name: str, until_ns: int) -> Table:
@@ -199,7 +200,7 @@ def _notes(repository: Repository, name: str, until_ns: int) -> Table:
     rows = [
         (
             one.time_ns,
-            one.kind.value.replace("-", " "),
+            phrase(one.kind),
             one.reason if one.withdrawn_ns is None else f"withdrawn: {one.reason}",
             one.by,
         )
@@ -220,10 +221,6 @@ def _until(pages: _Pages[Item], until_ns: int) -> Sequence[Item]:
     """Return the latest items of a list until a time, latest first."""
     found = [one for one in pages(limit=LOOKED_THROUGH).items if one.time_ns <= until_ns]
     return found[:MOST_LISTED]
-
-
-def _mapping(found: object) -> Mapping[str, object]:
-    return found if isinstance(found, Mapping) else {}
 
 
 def _number(found: object) -> float | None:

@@ -1,7 +1,6 @@
 """The pictures of a motor's report."""
 
 from collections.abc import Sequence
-from zoneinfo import ZoneInfo
 
 from core.machines.parameters import Motor
 from service.condition.shown_records import asymmetry_of_records, load_points, supply_points
@@ -80,7 +79,7 @@ def _trend(
         detectable=motor.detectable,
         until_ns=until_ns,
         marks=[TrendMark(*event) for event in events],
-        zone=ZoneInfo(zone),
+        zone=zone,
     )
     return Picture(svg, f"The latest {len(points)} records, with the 95 % interval of the level.")
 

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 
 from core.error_words import one_line
+from core.time_words import clock
 from service.reports.document import (
     Cell,
     Column,
@@ -16,7 +17,6 @@ from service.reports.document import (
     Table,
     Words,
 )
-from service.reports.times import clock
 
 MOST_ROWS = 2500
 """Of a table on paper; a workbook has the others."""

@@ -75,6 +75,11 @@ class Alarm:
     part_of: str | None = None
 
     @property
+    def place(self) -> str:
+        """Return what the alarm is about: a motor, a relay, a site, or the service itself."""
+        return self.motor or self.ied or self.site or "the service"
+
+    @property
     def standing(self) -> bool:
         """Tell whether the cause stands."""
         return self.cleared_ns is None

@@ -1,13 +1,13 @@
 """The pages of alarms, and the forms on them. The forms call what the API's routes call."""
 
 from http import HTTPStatus
-from typing import Annotated, Final
+from typing import Annotated
 from uuid import UUID
 
 from fastapi import APIRouter, Form, Query
 from starlette.responses import Response
 
-from core.units import NANOSECONDS_PER_SECOND
+from core.units import NANOSECONDS_PER_HOUR
 from service.access.permissions import Permission
 from service.api.access.requirements import require
 from service.api.alarms import people
@@ -25,7 +25,6 @@ from service.web.words import phrase
 
 router = APIRouter()
 
-HOUR_NS: Final = 3600 * NANOSECONDS_PER_SECOND
 ACKNOWLEDGE = [require(Permission.ACKNOWLEDGE)]
 CONFIGURE = [require(Permission.CONFIGURE)]
 
@@ -90,10 +89,9 @@ def show_alarm(view: Looking, alarm_id: UUID) -> Response:
     live = live_address(view.request, "alarms")
     details = alarm_details(view.context.repository, str(alarm_id), with_messages=view.may(Permission.NOTIFY))
     alarm = details.alarm
-    where = alarm.motor or alarm.ied or alarm.site or "the service"
     return view.page(
         "alarms/alarm.html",
-        title=f"{where}: {phrase(alarm.kind)}",
+        title=f"{alarm.place}: {phrase(alarm.kind)}",
         details=details,
         live=live,
         look=look_of(alarm),
@@ -120,7 +118,7 @@ def shelve_alarm(
     comment: Comment = "",
 ) -> Response:
     """Set an alarm aside for a time, until it has grown by so much, or what comes first."""
-    until = None if hours is None else rfc3339(view.now_ns + hours * HOUR_NS)
+    until = None if hours is None else rfc3339(view.now_ns + hours * NANOSECONDS_PER_HOUR)
     fields = {"until": until, "growth": _share(growth_percent), "comment": comment.strip()}
     wanted = document_of_form(ShelvingRequest, fields)
     people.shelve_alarm(view.context, view.asking.actor, alarm_id, wanted)

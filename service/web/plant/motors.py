@@ -6,7 +6,7 @@ from math import isfinite, sqrt
 from typing import Final
 
 from core.machines.parameters import Connection, Limits, Nameplate, ParametersSource
-from core.units import NANOSECONDS_PER_SECOND
+from core.units import NANOSECONDS_PER_HOUR
 from service.api.pages import decode, encode
 from service.storage import Repository
 from service.storage.records import Sample
@@ -15,7 +15,7 @@ from service.web.addresses import address
 
 MOST_SHOWN: Final = 100
 
-RECENT_NS: Final = 3600 * NANOSECONDS_PER_SECOND
+RECENT_NS: Final = NANOSECONDS_PER_HOUR
 """What was measured longer ago says little of now."""
 
 NO_VOLTAGE: Final = 0.2

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
-from core.units import NANOSECONDS_PER_SECOND
+from core.units import NANOSECONDS_PER_DAY, NANOSECONDS_PER_SECOND
 from mms import CredentialFileError, read_certificates
 from service.configuration.certificate_files import certificate_files_of
 from service.configuration.relay_access import RelayAccess
@@ -21,7 +21,7 @@ class CertificateEnd:
 
     def left_days(self, now_ns: int) -> float | None:
         """Return for how many days it lasts; below 0 where it has ended."""
-        return None if self.ends_ns is None else (self.ends_ns - now_ns) / NANOSECONDS_PER_SECOND / 86_400
+        return None if self.ends_ns is None else (self.ends_ns - now_ns) / NANOSECONDS_PER_DAY
 
 
 def certificate_ends(access: RelayAccess | None) -> Sequence[CertificateEnd]:

@@ -127,7 +127,7 @@ def test_all_alarms_of_a_month(repository: Repository, called: str) -> None:
     assert second[4] is None
     assert second[8] == "unacknowledged"
     assert ("calls", "2: 2 low") in sheets["report"]
-    assert ("acknowledged", "1 of 2; half of them within 60 min") in sheets["report"]
+    assert ("acknowledged", "1 of 2; half of them within 60 minutes") in sheets["report"]
     text = text_of(make_report(source, AlarmsReport(MONTH, NEXT_YEAR_NS), PDF).content)
     assert "Alarms of 2025-10" in text
     assert "looked at it" in text

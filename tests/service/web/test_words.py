@@ -1,17 +1,6 @@
-import pytest
-
 from service.web import words
 
 DAY_NS = 86_400_000_000_000
-
-
-@pytest.mark.parametrize(
-    ("seconds", "expected"),
-    [(0.4, "0 seconds"), (1.9, "1 second"), (119, "119 seconds"), (120, "2 minutes"), (7199, "119 minutes"),
-     (7200, "2 hours"), (172_800, "2 days"), (800 * 86_400, "2 years")],
-)  # fmt: skip
-def test_a_period_in_its_largest_unit(seconds: float, expected: str) -> None:
-    assert words.duration(seconds) == expected
 
 
 def test_ages() -> None:
@@ -31,5 +20,3 @@ def test_figures() -> None:
     assert words.figure(0.0012345, "A") == "0.00123 A"
     assert words.figure(123456.0, "W") == "123456 W"
     assert words.size(1_234_567) == "1.23 MB"
-    assert words.utc(0) == "1970-01-01 00:00 UTC"
-    assert words.phrase("shorted-turns") == "shorted turns"

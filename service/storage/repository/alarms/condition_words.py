@@ -3,7 +3,8 @@
 from collections.abc import Collection, Mapping, Sequence
 
 from core.condition.kinds import Kind
-from core.quantity_text import period
+from core.terms import phrase
+from core.time_words import time_ahead
 from service.alarms.growth import LevelSeen, magnitude
 from service.storage.records import ConditionEntry
 
@@ -28,7 +29,7 @@ class ConditionWords:
     def subject(self) -> str:
         """Return what has changed, and in which phase; of what is unclear, what it may be."""
         kinds = _texts(self._document.get("candidates")) or [str(self._condition.kind)]
-        words = " or ".join(kind.replace("-", " ") for kind in kinds)
+        words = " or ".join(phrase(kind) for kind in kinds)
         phase = self._condition.phase
         return words if phase is None else f"{words} in phase {phase}"
 
@@ -79,8 +80,8 @@ class ConditionWords:
             return ""
         low, mid, high = days
         return (
-            f"the fault level will likely reach {100 * self.limit:.2f} % in {period(mid)} "
-            f"({period(low)} to {period(high)}), counted from the latest record"
+            f"the fault level will likely reach {100 * self.limit:.2f} % in {time_ahead(mid)} "
+            f"({time_ahead(low)} to {time_ahead(high)}), counted from the latest record"
         )
 
     @property
