@@ -2,6 +2,12 @@
 
 from dataclasses import dataclass
 from enum import StrEnum
+from math import log10
+
+LOWEST_DB = -120.0
+"""What is less is written so."""
+LOAD_BINS, BINS_PER_RATED_LOAD = 12, 10
+"""Loads up to 1.2 times the rated one in tenths of it."""
 
 
 class RotorState(StrEnum):
@@ -82,3 +88,35 @@ class RotorFinding:
             "load_oscillation_dB": self.load_oscillation_dB,
             "reasons": list(self.reasons),
         }
+
+
+def decibels(ratio: float) -> float:
+    """Return a ratio of amplitudes in decibels.
+
+    Parameters
+    ----------
+    ratio : float
+        The ratio; one of zero or below is written as the lowest value.
+
+    Returns
+    -------
+    float
+        20 lg(ratio), not below LOWEST_DB [dB].
+    """
+    return max(LOWEST_DB, 20.0 * log10(ratio)) if ratio > 0.0 else LOWEST_DB
+
+
+def load_bin(load_level: float) -> int:
+    """Return the load bin, from 0 to 11.
+
+    Parameters
+    ----------
+    load_level : float
+        Load torque over rated torque.
+
+    Returns
+    -------
+    int
+        Tenth of the rated load; loads outside count to the first and the last bin.
+    """
+    return min(max(int(load_level * BINS_PER_RATED_LOAD), 0), LOAD_BINS - 1)

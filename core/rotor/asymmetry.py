@@ -1,0 +1,206 @@
+"""The rotor's asymmetry in one record: where its line stands, how large it is, and how sure that is."""
+
+from dataclasses import dataclass
+from math import ceil, floor, hypot, log, pi, sqrt
+
+import numpy as np
+
+from core.machines.base import Array
+from core.machines.parameters import Motor
+from core.machines.steady_state import ComplexArray
+from core.rotor.baseband import Baseband
+from core.rotor.rotor_circuit import RotorLines, rotor_lines
+from core.rotor.running_point import errors, running_point
+from core.rotor.sidebands import Lines, fit_lines, without_lines
+
+LOWEST_RATIO, HIGHEST_RATIO = 0.8, 1.4
+"""Where the line may stand, over twice the model's slip: a rotor that is warm, or has broken bars, slips more
+than its parameters say."""
+FEWEST_TURNS = 1.2
+"""Least distance of a line from the fundamental, in cycles of it over the record."""
+POINTS_A_TURN = 4.0
+"""Fineness of the search; a line half a step off keeps 97 % of its amplitude."""
+GUARD_TURNS, REFERENCE_TURNS = 1.0, 24
+"""Distance from the search at which noise is taken from, and how far off, in cycles over the record."""
+HIGHEST_OVER_SUPPLY = 0.6
+"""Highest distance of a line over the supply's frequency; near 1 the means over a cycle leave nothing."""
+FALSE_ALARM = 1e-4
+"""Chance that noise alone passes for a line."""
+NINE_IN_TEN = 1.2816
+"""Quantile of the normal distribution."""
+NORMAL_95 = 1.96
+MODEL_SHARE = 0.05
+"""Standard deviation of what a machine differs by from its linear model (saturation, deep bars), over the
+asymmetry."""
+
+
+@dataclass(frozen=True, slots=True)
+class Asymmetry:
+    """The rotor's asymmetry in one record.
+
+    Parameters
+    ----------
+    ratio : float
+        Distance of the line over twice the model's slip.
+    value : float
+        Half the difference of the resistances of the cage's axes, over R_r.
+    interval : tuple of float
+        Its 95 % interval from noise and parameters; it may begin below zero.
+    threshold : float
+        Value from which on it is neither noise nor a wrongly removed ripple of the speed.
+    detection_limit : float
+        Value that nine of ten such records show.
+    leak : float
+        Part of the threshold that comes from the ripple of the speed and the parameters' errors.
+    lower, upper : float
+        Current at the sidebands over the fundamental, as measured.
+    load_torque, inertia_torque : float
+        Amplitudes of the load's torque and of that which the ripple of the speed takes, over rated torque.
+    load_torque_noise : float
+        What noise makes of the load's torque, rms.
+    """
+
+    ratio: float
+    value: float
+    interval: tuple[float, float]
+    threshold: float
+    detection_limit: float
+    leak: float
+    lower: float
+    upper: float
+    load_torque: float
+    inertia_torque: float
+    load_torque_noise: float
+
+    @property
+    def is_detected(self) -> bool:
+        """Whether there is an asymmetry at all."""
+        return self.value > self.threshold
+
+
+def measure_asymmetry(baseband: Baseband, angle: Array, motor: Motor) -> Asymmetry:
+    """Find the line of the rotor's asymmetry near twice the model's slip, and what noise is around it.
+
+    Parameters
+    ----------
+    baseband : Baseband
+        The record; it has at least FEWEST_TURNS turns of the angle.
+    angle : ndarray, shape (n,)
+        Angle of the sidebands [rad].
+    motor : Motor
+        Nameplate, parameters and their tolerances, and sensors.
+
+    Returns
+    -------
+    Asymmetry
+        The greatest asymmetry of the search where there is one; otherwise that of the strongest lines, which
+        tell of the load.
+    """
+    record = _Record(baseband, angle, motor)
+    first, last = record.search
+    kappa = np.linspace(first, last, max(2, ceil((last - first) * POINTS_A_TURN) + 1)) / record.turns
+    lines = fit_lines(baseband, angle, kappa)
+    greatest = int(np.argmax(np.abs(record.meaning(lines, kappa).asymmetry)))
+    found = _measured(record, lines.at(greatest), kappa[greatest : greatest + 1])
+    if found.is_detected:
+        return found
+    strongest = int(np.argmax(np.abs(lines.upper[:, 1]) + np.abs(lines.lower[:, 1])))
+    return _measured(record, lines.at(strongest), kappa[strongest : strongest + 1])
+
+
+@dataclass(frozen=True, slots=True)
+class _Record:
+    """A record in which pairs of lines are looked for at multiples of the sidebands' angle."""
+
+    baseband: Baseband
+    angle: Array
+    motor: Motor
+
+    @property
+    def turns(self) -> float:
+        """Cycles of the sidebands' distance over the record."""
+        return float(self.angle[-1] - self.angle[0]) / (2.0 * pi)
+
+    @property
+    def highest(self) -> float:
+        """Farthest lines that the means over a cycle leave, in cycles over the record."""
+        return HIGHEST_OVER_SUPPLY * self.baseband.duration_s / self.baseband.cycle_s
+
+    @property
+    def search(self) -> tuple[float, float]:
+        """Distances between which the line is looked for, in cycles over the record."""
+        turns = self.turns
+        return max(LOWEST_RATIO * turns, FEWEST_TURNS), min(HIGHEST_RATIO * turns, self.highest)
+
+    def around(self) -> Array:
+        """Return ratios outside the search, a cycle over the record apart, shape (references,)."""
+        first, last = self.search
+        below = np.arange(floor(first - GUARD_TURNS), FEWEST_TURNS, -1.0)
+        above = np.arange(last + GUARD_TURNS, min(self.highest, last + GUARD_TURNS + REFERENCE_TURNS) + 1.0)
+        return np.concatenate([below[:REFERENCE_TURNS], above]) / self.turns
+
+    def meaning(
+        self, lines: Lines, kappa: Array, motor: Motor | None = None, baseband: Baseband | None = None
+    ) -> RotorLines:
+        """Return what lines mean, perhaps with another motor's parameters or another fundamental."""
+        known, record = motor or self.motor, baseband or self.baseband
+        distance = kappa * (2.0 * pi * self.turns / self.baseband.duration_s)
+        return rotor_lines(lines, distance, running_point(record, known), known)
+
+    def asymmetry(
+        self, line: Lines, kappa: Array, motor: Motor | None = None, baseband: Baseband | None = None
+    ) -> complex:
+        """Return the asymmetry that one pair of lines means."""
+        return complex(self.meaning(line, kappa, motor, baseband).asymmetry[0])
+
+
+def _measured(record: _Record, line: Lines, kappa: Array) -> Asymmetry:
+    baseband, around = record.baseband, record.around()
+    left = without_lines(baseband, record.angle, kappa, line)
+    beside = record.meaning(fit_lines(left, record.angle, around), around)
+    noise = _mean_square(beside.asymmetry)
+    first, last = record.search
+    found = record.meaning(line, kappa)
+    value = complex(found.asymmetry[0])
+    ripple = _of_the_ripple_alone(record, line, kappa)
+    scale, leak = MODEL_SHARE * abs(value), 0.0
+    for motor, wrong, deviations in errors(baseband, record.motor):
+        other = record.asymmetry(line, kappa, motor, wrong)
+        scale = hypot(scale, deviations * (abs(other) - abs(value)))
+        leak = hypot(leak, deviations * abs(record.asymmetry(ripple, kappa, motor, wrong)))
+    by_chance = sqrt(noise * _exceeded_by_chance(around.size, max(1.0, last - first)))
+    threshold = hypot(by_chance, NORMAL_95 * leak)
+    radial = sqrt((noise + leak**2) / 2.0)
+    spread = NORMAL_95 * hypot(radial, scale)
+    current = abs(baseband.current.mean())
+    return Asymmetry(
+        ratio=float(kappa[0]),
+        value=abs(value),
+        interval=(abs(value) - spread, abs(value) + spread),
+        threshold=threshold,
+        detection_limit=threshold + NINE_IN_TEN * radial,
+        leak=NORMAL_95 * leak,
+        lower=float(abs(line.lower[0, 1])) / current,
+        upper=float(abs(line.upper[0, 1])) / current,
+        load_torque=float(abs(found.load_torque[0])),
+        inertia_torque=float(abs(found.inertia_torque[0])),
+        load_torque_noise=sqrt(_mean_square(beside.load_torque)),
+    )
+
+
+def _of_the_ripple_alone(record: _Record, line: Lines, kappa: Array) -> Lines:
+    """Return the lines as they would be without the asymmetry, which is linear in the lower current."""
+    unit_A = abs(record.baseband.current.mean())
+    without = record.asymmetry(line.with_lower_current(0.0), kappa)
+    per_ampere = (record.asymmetry(line.with_lower_current(unit_A), kappa) - without) / unit_A
+    return line.with_lower_current(-without / per_ampere)
+
+
+def _mean_square(x: ComplexArray) -> float:
+    """Return the mean square of noise from its median, which single lines of the load do not move."""
+    return float(np.median(np.abs(x) ** 2)) / log(2.0)
+
+
+def _exceeded_by_chance(references: int, chances: float) -> float:
+    """Return the ratio to a mean of so many squares that one of so many others exceeds by chance."""
+    return references * float((FALSE_ALARM / chances) ** (-1.0 / references) - 1.0)
