@@ -33,7 +33,7 @@ class RotorFinding:
     severity_dB : float or None
         Asymmetry of the rotor's resistance, half the difference of its axes over its value [dB]. It is the
         lower sideband over the rotor's current that a rotor of steady speed would have; load and inertia do
-        not change it. A cage that lost n of N neighbouring bars has about n / N.
+        not change it. A cage that lost n of N neighbouring bars has a little less than n / N.
     severity_dB_ci95 : tuple of float or None
         Its 95 % interval: noise, and the parameters of the model.
     detection_limit_dB : float or None

@@ -3,9 +3,9 @@
 from core.rotor.asymmetry import Asymmetry
 from core.rotor.finding import RotorState, decibels
 
-WATCH_DB, FAULT_DB = -40.0, -35.0
-"""Severities: cages as they are made stay below the first. One open bar of 56 reaches the second; one of 28
-has -29 dB."""
+WATCH_DB, FAULT_DB = -42.0, -36.0
+"""Severities: cages as they are made stay below the first. One open bar of 50 reaches the second; one of 28
+has -30 dB."""
 LEAST_LOAD_TORQUE = 0.005
 """Swing of the load that is told, over rated torque."""
 CERTAIN_RATIO = 4.0

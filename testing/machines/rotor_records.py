@@ -1,13 +1,14 @@
 """Records of motors with broken rotor bars and with loads that swing, from the simulator's own physics."""
 
 from dataclasses import dataclass, field, replace
-from math import pi
+from math import log10, pi
 
 import numpy as np
 from numpy.typing import NDArray
 
 from core.machines.parameters import Motor
 from core.recordings import Recording
+from ied_sim.motor.cage import cage_loops
 from ied_sim.motor.load import Load
 from ied_sim.motor.plant import MotorPlant, Operation, rated_current
 from ied_sim.motor.sensors import Sensors
@@ -61,6 +62,18 @@ class RotorCase:
     def record(self, duration_s: float, sample_rate_hz: float = 5_000.0, *, seed: int = 0) -> Recording:
         """What a relay records."""
         return measured(self, self.operation(duration_s, sample_rate_hz), sample_rate_hz, seed)
+
+    @property
+    def asymmetry_dB(self) -> float:
+        """Half the difference of the conductances of the simulated cage's axes, over their mean [dB].
+
+        They are those of its network of bars and rings at the slip zero.
+        """
+        plant = self.plant
+        machine, pole_pairs = plant.motor.parameters, plant.motor.nameplate.pole_pairs
+        cage = cage_loops(machine, pole_pairs, plant.cage, self.broken_share)
+        low, high = np.linalg.eigvalsh(cage.axes @ np.linalg.solve(cage.resistance, cage.axes.T))
+        return 20.0 * log10(float((high - low) / (high + low)))
 
     def slip(self) -> float:
         """Mean slip, from the simulated speed over a slow swing's period or a second."""
