@@ -10,7 +10,7 @@ from core.machines.parameters import Motor
 from core.operation import Operation
 from core.supply.measuring import measure_supply
 from ied_sim.motor.load import Load
-from ied_sim.motor.plant import MotorPlant
+from ied_sim.motor.plant import MotorPlant, rated_current
 from ied_sim.motor.sensors import Sensors
 from ied_sim.motor.supply import Supply
 from testing.machines.disturbed_records import record_of
@@ -24,7 +24,9 @@ def metered(motor: Motor, load: float) -> Metered:
     """What is measured of the simulated motor once it runs."""
     plate = motor.nameplate
     supply = Supply(plate.rated_voltage_V, plate.rated_frequency_Hz)
-    plant = MotorPlant(motor, supply, Load(load), Sensors(1e4, 1e5))
+    plant = MotorPlant(
+        motor, supply, Load(load), Sensors(10.0 * rated_current(motor), 2.0 * plate.rated_voltage_V)
+    )
     found = measure_supply(record_of(plant.window(0.0, 0.4, RATE_HZ), RATE_HZ), motor)
     return Metered(AT, found.line_currents_A, found.line_voltages_V, found.active_power_W, found.frequency_hz)
 

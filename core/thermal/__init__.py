@@ -1,0 +1,1 @@
+"""How hot a motor is: its relay's thermal model, a model of two bodies, and its winding's resistance."""
