@@ -24,6 +24,8 @@ from service.web.motor.drawings import MotorDrawings, motor_drawings
 from service.web.motor.marks import trend_marks
 from service.web.motor.measured import MeasuredValues, measured_values
 from service.web.motor.nameplate import KnownMotor, known_motor
+from service.web.motor.rotor import RotorSection, rotor_section
+from service.web.motor.supply import SupplySection, supply_section
 from service.web.motor.trend import SPANS, TrendSpan, told, trend_chart
 from service.web.motor.verdict import MotorVerdict, motor_verdict
 
@@ -52,6 +54,8 @@ class MotorPage:
     condition: Condition
     verdict: MotorVerdict
     trend: MotorTrend
+    rotor: RotorSection
+    supply: SupplySection
     known: KnownMotor | None
     drawings: MotorDrawings | None
     measured: MeasuredValues | None
@@ -82,6 +86,8 @@ def motor_page(context: ApiContext, name: str, span: TrendSpan, now_ns: int) -> 
             health, condition, now_ns, oldest_ns, None if known is None else known.motor.limits.fault_level
         ),
         trend=_trend(repository, name, span, condition, known, now_ns),
+        rotor=rotor_section(repository, name),
+        supply=supply_section(repository, name),
         known=known,
         drawings=None
         if known is None

@@ -1,0 +1,154 @@
+"""The rotor of a motor on its page: what its records say of it, and over time."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from core.rotor.finding import RotorState
+from core.units import NANOSECONDS_PER_SECOND
+from service.client.examined import STATES, decibels, sideband_words
+from service.storage import Repository
+from service.storage.records import RotorEntry
+from service.web.charts import Chart, Kind, Series, Tone
+from service.web.charts.chart import AxisKind
+
+MOST_RECORDS: Final = 400
+"""The latest records that the charts show."""
+LOWEST_DB: Final = -90.0
+"""What lies lower is drawn here: it is noise."""
+DIGITS: Final = 1
+TONES: Final = (Tone.A, Tone.B, Tone.C, Tone.MODEL, Tone.ACCENT)
+
+
+@dataclass(frozen=True, slots=True)
+class RotorSection:
+    """What the page says of the rotor. latest: None where no record tells of it; no charts then."""
+
+    latest: RotorEntry | None
+    state: RotorState
+    words: str
+    sentence: str
+    sidebands: str | None
+    severity_chart: Chart | None
+    sideband_chart: Chart | None
+    records: int
+    silent: int
+
+
+def rotor_section(repository: Repository, motor: str) -> RotorSection:
+    """Read what the page says of a motor's rotor. Raises NotFoundError."""
+    entries = repository.latest_rotor_findings(motor, limit=MOST_RECORDS)
+    telling = [one for one in entries if one.finding.severity_dB is not None]
+    latest = telling[-1] if telling else (entries[-1] if entries else None)
+    state = RotorState.UNSUPPORTED if latest is None else latest.finding.state
+    return RotorSection(
+        latest=latest,
+        state=state,
+        words=STATES[state],
+        sentence=_sentence(latest),
+        sidebands=None if latest is None else sideband_words(latest.finding),
+        severity_chart=_severity_chart(motor, telling) if telling else None,
+        sideband_chart=_sideband_chart(motor, telling) if telling else None,
+        records=len(entries),
+        silent=len(entries) - len(telling),
+    )
+
+
+def _sentence(latest: RotorEntry | None) -> str:
+    if latest is None:
+        return "No record tells of the rotor yet."
+    finding = latest.finding
+    if finding.severity_dB is None:
+        return "The records cannot tell whether the cage is sound."
+    level = decibels(finding.severity_dB, finding.severity_dB_ci95)
+    return {
+        RotorState.HEALTHY: f"The cage is even: its asymmetry is {level}.",
+        RotorState.WATCH: f"The cage may be uneven: its asymmetry is {level}.",
+        RotorState.FAULT: f"The cage is uneven, as with broken bars or a broken end ring: {level}.",
+        RotorState.UNSUPPORTED: f"This record cannot tell whether the cage is sound: {level}.",
+    }[finding.state]
+
+
+def _severity_chart(motor: str, entries: Sequence[RotorEntry]) -> Chart:
+    """Return the severity over time, of each tenth of the load by itself, with what would have been seen."""
+    severities = [_drawn(one.finding.severity_dB) for one in entries]
+    intervals = [one.finding.severity_dB_ci95 for one in entries]
+    bins = sorted({one.finding.load_bin for one in entries if one.finding.load_bin is not None})
+    series = [
+        Series(
+            "95 % interval",
+            [None] * len(entries),
+            "dB",
+            Tone.MUTED,
+            Kind.LINE,
+            [None if ends is None else _drawn(ends[0]) for ends in intervals],
+            [None if ends is None else _drawn(ends[1]) for ends in intervals],
+        ),
+        Series(
+            "would be seen",
+            [_drawn(one.finding.detection_limit_dB) for one in entries],
+            "dB",
+            Tone.MUTED,
+            Kind.DASHES,
+        ),
+    ]
+    for number, load_bin in enumerate(bins):
+        of_bin = [one.finding.load_bin == load_bin for one in entries]
+        series.append(
+            Series(
+                f"at {10 * load_bin} to {10 * (load_bin + 1)} % load",
+                [value if is_in else None for value, is_in in zip(severities, of_bin, strict=True)],
+                "dB",
+                TONES[number % len(TONES)],
+                Kind.POINTS,
+            )
+        )
+    for state, tone in ((RotorState.WATCH, Tone.WATCH), (RotorState.FAULT, Tone.FAULT)):
+        called = [one.finding.state is state for one in entries]
+        if any(called):
+            values = [
+                value if is_called else None for value, is_called in zip(severities, called, strict=True)
+            ]
+            series.append(Series(state.value, values, "dB", tone, Kind.POINTS))
+    return Chart(
+        key="rotor-severity",
+        caption=f"Asymmetry of the rotor of {motor}",
+        x_label="time",
+        y_label="asymmetry of the cage",
+        y_unit="dB",
+        x_kind=AxisKind.TIME,
+        x=_times(entries),
+        series=series,
+        summary=f"{len(entries)} record{'s' if len(entries) > 1 else ''}, by tenths of the rated load.",
+        sync="rotor",
+    )
+
+
+def _sideband_chart(motor: str, entries: Sequence[RotorEntry]) -> Chart:
+    lower = [_drawn(one.finding.lower_sideband_dB) for one in entries]
+    upper = [_drawn(one.finding.upper_sideband_dB) for one in entries]
+    swing = [_drawn(one.finding.load_oscillation_dB) for one in entries]
+    return Chart(
+        key="rotor-sidebands",
+        caption=f"Sidebands in the current of {motor}",
+        x_label="time",
+        y_label="over the fundamental",
+        y_unit="dB",
+        x_kind=AxisKind.TIME,
+        x=_times(entries),
+        series=[
+            Series("lower, (1 - 2s) f", lower, "dB", Tone.INK, Kind.LINE),
+            Series("upper, (1 + 2s) f", upper, "dB", Tone.ACCENT, Kind.LINE),
+            Series("swing of the load's torque, over the rated one", swing, "dB", Tone.MUTED, Kind.THIN),
+        ],
+        summary="As measured: load and inertia are still in them.",
+        sync="rotor",
+    )
+
+
+def _times(entries: Sequence[RotorEntry]) -> list[float]:
+    return [round(one.time_ns / NANOSECONDS_PER_SECOND, 3) for one in entries]
+
+
+def _drawn(value_dB: float | None) -> float | None:
+    return None if value_dB is None else round(max(value_dB, LOWEST_DB), DIGITS)

@@ -1,0 +1,79 @@
+"""Rotor and supply on the page of a motor."""
+
+import json
+from dataclasses import replace
+from typing import Any
+
+import httpx
+import pytest
+from lxml import html
+
+from core.rotor.finding import RotorState
+from service.recording_store.store import RecordingStore
+from service.storage import Repository
+from testing.service.examined import BROKEN_ROTOR, SHORT_RECORD, SOUND_ROTOR, SUPPLY, ExaminedRecordings
+from tests.service.web.motor.recorded import MOTOR, know
+from tests.service.web.pages import page, words
+
+HERE = f"/motors/{MOTOR}"
+LIGHTLY_LOADED = replace(SOUND_ROTOR, load_bin=3, load_level=0.35, severity_dB=-66.0)
+
+
+@pytest.fixture
+def recorded(repository: Repository, store: RecordingStore) -> ExaminedRecordings:
+    know(repository)
+    return ExaminedRecordings(repository, store)
+
+
+def chart(document: html.HtmlElement, key: str) -> Any:
+    (found,) = document.cssselect(f"#{key}-data")
+    return json.loads(found.text_content())
+
+
+def test_what_no_record_tells_is_said(client: httpx.Client, recorded: ExaminedRecordings) -> None:
+    document = page(client.get(HERE))
+    assert words(document, "#rotor .sentence") == ["not told No record tells of the rotor yet."]
+    assert "No record shows the supply yet." in " ".join(words(document, "#supply"))
+    assert not document.cssselect("#rotor-severity-data, #supply-data")
+
+
+def test_a_broken_cage_is_told_in_words_with_how_sure_that_is(
+    client: httpx.Client, recorded: ExaminedRecordings
+) -> None:
+    recorded.add(SOUND_ROTOR)
+    latest = recorded.add(BROKEN_ROTOR)
+    recorded.add(SHORT_RECORD)
+    document = page(client.get(HERE))
+    assert words(document, "#rotor .sentence") == [
+        "fault The cage is uneven, as with broken bars or a broken end ring: -29.0 dB [-31.0..-27.5]."
+    ]
+    told = " ".join(words(document, "#rotor"))
+    assert "-35.5 dB below, -41.0 dB above the supply's line, at a slip of 3.10 %" in told
+    assert "never how many bars are broken" in told
+    assert "1 of the latest 3 records cannot tell" in told
+    assert document.cssselect(f'#rotor a[href="/recordings/{latest}"]')
+
+
+def test_severity_is_drawn_by_load_with_what_would_be_seen(
+    client: httpx.Client, recorded: ExaminedRecordings
+) -> None:
+    recorded.add(SOUND_ROTOR)
+    recorded.add(LIGHTLY_LOADED)
+    recorded.add(BROKEN_ROTOR)
+    document = page(client.get(HERE))
+    drawn = {one["label"]: one["values"] for one in chart(document, "rotor-severity")["series"]}
+    assert drawn["at 30 to 40 % load"] == [None, -66.0, None]
+    assert drawn["at 60 to 70 % load"] == [-68.0, None, -29.0]
+    assert drawn["would be seen"] == [-52.0] * 3
+    assert drawn[RotorState.FAULT] == [None, None, -29.0]
+    sidebands = {one["label"]: one["values"] for one in chart(document, "rotor-sidebands")["series"]}
+    assert sidebands["lower, (1 - 2s) f"] == [-71.5, -71.5, -35.5]
+
+
+def test_the_supply_is_told_and_drawn(client: httpx.Client, recorded: ExaminedRecordings) -> None:
+    recorded.add(None, SUPPLY)
+    document = page(client.get(HERE))
+    assert "derating 1.00" in " ".join(words(document, "#supply"))
+    drawn = {one["label"]: one["values"] for one in chart(document, "supply")["series"]}
+    assert drawn["unbalance of the voltages (NEMA)"] == [0.68]
+    assert drawn["voltage beside the rated one"] == [-0.27]
