@@ -295,7 +295,7 @@ class JobRunner:
             case Rejected(reason):
                 self._repository.reject_recording(job.id, reason, now_ns=time.time_ns(), runner=self._id)
                 log.warning("recording rejected", recording=job.recording_id, reason=storable(reason))
-            case Diagnosed(diagnosis, recorded_ns, observation, remark, has_time_code, start):
+            case Diagnosed(diagnosis, recorded_ns, observation, remark, has_time_code, start, rotor, supply):
                 now_ns, left_out = time.time_ns(), None
                 try:
                     require_possible_time(recorded_ns, now_ns)
@@ -315,6 +315,8 @@ class JobRunner:
                         left_out=left_out,
                         operation_remark=remark,
                         start=start,
+                        rotor=rotor,
+                        supply=supply,
                     )
                 except UnstorableDiagnosisError as error:
                     self._retry(claimed, f"the diagnosis cannot be stored: {error}")

@@ -7,7 +7,9 @@ from pathlib import Path
 from core.condition.observation import Observation
 from core.diagnosis.verdict import Diagnosis
 from core.machines.parameters import Motor
+from core.rotor.finding import RotorFinding
 from core.starts.figures import MotorStart
+from core.supply.figures import SupplyFigures
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,13 +32,14 @@ class DiagnosisTask:
 
 @dataclass(frozen=True, slots=True)
 class Diagnosed:
-    """Hold a diagnosis, the time of its record, and what the record tells of its motor's condition.
+    """Hold a diagnosis, the time of its record, and all else that the record tells of its motor.
 
     recorded_ns: trigger time written in the record, UTC [ns].  observation: None where it tells nothing.
     operation_remark: why the motor's parameters cannot be estimated from this start; None where they can, and
     for other records.
     has_time_code: whether the record tells how far its times are ahead of UTC.
-    start: what a start shows; None of other records, and where nothing can be measured.
+    start: what a start shows; None of other records, and where nothing can be measured.  rotor, supply: what
+    the record shows of them; None where it shows nothing.
     """
 
     diagnosis: Diagnosis
@@ -45,6 +48,8 @@ class Diagnosed:
     operation_remark: str | None = None
     has_time_code: bool = False
     start: MotorStart | None = None
+    rotor: RotorFinding | None = None
+    supply: SupplyFigures | None = None
 
 
 @dataclass(frozen=True, slots=True)

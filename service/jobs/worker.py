@@ -57,6 +57,8 @@ def diagnose_recording(task: DiagnosisTask) -> Outcome:
         remark,
         recording.has_time_code,
         start,
+        examined.rotor,
+        examined.supply,
     )
 
 

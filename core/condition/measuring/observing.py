@@ -1,12 +1,13 @@
-"""An observation of a motor's condition from each of its records, beside the record's own diagnosis."""
+"""All that one record tells: its own diagnosis, an observation of its motor's condition, rotor and supply."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from hashlib import sha256
 from math import isfinite, sqrt
 from time import perf_counter
 
 import numpy as np
 
+from core.condition.measuring.beside_stator import rotor_of, supply_of
 from core.condition.measuring.measurement import LONGEST_RECORDER, negative_impedance
 from core.condition.observation import Observation, VoltageChannels
 from core.diagnosis.acceptance import Accepted, accept
@@ -19,6 +20,8 @@ from core.diagnosis.stator import diagnose_accepted
 from core.diagnosis.verdict import Diagnosis
 from core.machines.parameters import Motor
 from core.recordings import Channel, Quantity, Recording
+from core.rotor.finding import RotorFinding
+from core.supply.figures import SupplyFigures
 
 PHASE_PER_SPACE_VECTOR = sqrt(2.0 / 3.0)
 """Phasor of a phase over that of the power-invariant space vector."""
@@ -33,12 +36,31 @@ class Examined:
     diagnosis : Diagnosis
         Its verdict.
     observation : Observation or None
-        What it tells of the motor's condition; None where the quality gate refused it, or no
-        voltages are used.
+        What it tells of the motor's condition; None where the quality gate refused it, no voltages are
+        used, or its time is not known.
+    rotor : RotorFinding
+        What it tells of the rotor's cage.
+    supply : SupplyFigures or None
+        What it shows of the supply; None where it shows nothing.
     """
 
     diagnosis: Diagnosis
     observation: Observation | None
+    rotor: RotorFinding
+    supply: SupplyFigures | None
+
+    def as_dict(self) -> dict[str, object]:
+        """Return the document that `mcc diagnose --json` prints; its keys are a contract.
+
+        Returns
+        -------
+        dict of str to object
+            The document of the diagnosis, with `rotor` and `supply`.
+        """
+        return self.diagnosis.as_dict() | {
+            "rotor": self.rotor.as_dict(),
+            "supply": None if self.supply is None else self.supply.as_dict(),
+        }
 
 
 def observe(recording: Recording, motor: Motor) -> Observation | None:
@@ -77,9 +99,10 @@ def examine(
     baseline: Baseline | None = None,
     currents_only: bool = False,
 ) -> Examined:
-    """Diagnose a record and observe the motor's condition in it; the record is read once for both.
+    """Diagnose a record, observe the motor's condition in it, and see what it tells of rotor and supply.
 
-    A baseline serves the diagnosis alone: the observation holds what was measured.
+    The record goes through the quality gate once for all. A baseline serves the diagnosis alone: the
+    observation holds what was measured.
 
     Parameters
     ----------
@@ -99,7 +122,7 @@ def examine(
     Returns
     -------
     Examined
-        Diagnosis and observation.
+        Diagnosis, observation, rotor and supply.
 
     Raises
     ------
@@ -111,8 +134,16 @@ def examine(
     begun = perf_counter()
     acceptance = accept(recording, motor, currents_only=currents_only)
     diagnosis = diagnose_accepted(acceptance, method=method, model=model, baseline=baseline, begun=begun)
-    accepted = acceptance.accepted
-    return Examined(diagnosis, None if accepted is None else observation_of(recording, accepted))
+    accepted, undated = acceptance.accepted, recording.start_time_ns is None
+    supply, problem = supply_of(recording, motor, acceptance)
+    if problem is not None:
+        diagnosis = replace(diagnosis, reasons=(*diagnosis.reasons, problem))
+    return Examined(
+        diagnosis=diagnosis,
+        observation=None if accepted is None or undated else observation_of(recording, accepted),
+        rotor=rotor_of(recording, accepted, diagnosis),
+        supply=supply,
+    )
 
 
 def observation_of(recording: Recording, accepted: Accepted) -> Observation | None:

@@ -7,8 +7,9 @@ from pathlib import Path
 
 from rich.text import Text
 
+from core.condition.measuring.observing import Examined, examine
 from core.diagnosis.errors import DiagnosisError
-from core.diagnosis.stator import diagnose, learn_baseline
+from core.diagnosis.stator import learn_baseline
 from core.diagnosis.verdict import Diagnosis
 from core.machines.motor_file.error import MotorFileError
 from core.machines.motor_file.reader import read_motor
@@ -18,6 +19,7 @@ from core.quantity_text import with_unit
 from core.recordings import RecordingError
 from service.cli.output import WRONG_USE, CommandError, failing_clearly, print_document, results
 from service.cli.recordings.files import read_recording, with_advice
+from service.client.examined import rotor_words, sideband_words, supply_words
 from service.client.tables import FittedTable
 from service.client.verdicts import OPERATIONS, detection, interval, level, load, verdict_text
 
@@ -50,7 +52,7 @@ def diagnose_recording(
         found = read_motor(motor_file)
         healthy = [read_recording(one, lenient=lenient) for one in baseline]
         with _naming_currents_only():
-            diagnosis = diagnose(
+            examined = examine(
                 recording,
                 found,
                 method=method,
@@ -59,12 +61,14 @@ def diagnose_recording(
                 currents_only=currents_only,
             )
     repaired = (f"repaired: {note}" for note in recording.repairs)
+    diagnosis = examined.diagnosis
     diagnosis = replace(diagnosis, reasons=(*diagnosis.reasons, *repaired))
+    examined = replace(examined, diagnosis=diagnosis)
     if as_json:
         source = str(found.parameters_source)
-        print_document({**diagnosis.as_dict(), "motor_file": str(motor_file), "parameters_source": source})
+        print_document({**examined.as_dict(), "motor_file": str(motor_file), "parameters_source": source})
     else:
-        results().print(_table(record, motor_file, found.parameters_source, diagnosis))
+        results().print(_table(record, motor_file, found.parameters_source, examined))
 
 
 @contextmanager
@@ -100,7 +104,8 @@ def _verdict(diagnosis: Diagnosis) -> Text:
     return verdict if does is None else verdict.append(f" (the recording shows {does})")
 
 
-def _table(record: Path, motor_file: Path, source: ParametersSource, diagnosis: Diagnosis) -> FittedTable:
+def _table(record: Path, motor_file: Path, source: ParametersSource, examined: Examined) -> FittedTable:
+    diagnosis = examined.diagnosis
     table = FittedTable(title=Text(record.name), title_justify="left", show_header=False)
     table.add_row("verdict", _verdict(diagnosis))
     if diagnosis.mu_f is not None:
@@ -118,6 +123,7 @@ def _table(record: Path, motor_file: Path, source: ParametersSource, diagnosis: 
         )
     if diagnosis.residual_rms_A is not None:
         table.add_row("residual", f"{with_unit(diagnosis.residual_rms_A, 'A', 4)} rms")
+    _add_what_is_beside(table, examined)
     table.add_row("model, method", f"{diagnosis.model}, {diagnosis.method}")
     table.add_row("effort", f"{diagnosis.evaluations} evaluations, {diagnosis.compute_seconds:.3f} s")
     table.add_row("motor file", Text(str(motor_file)))
@@ -131,3 +137,16 @@ def _table(record: Path, motor_file: Path, source: ParametersSource, diagnosis: 
             table.add_row("warning", Text(finding.message))
     table.add_row("checks passed", str(sum(finding.passed for finding in diagnosis.quality)))
     return table
+
+
+def _add_what_is_beside(table: FittedTable, examined: Examined) -> None:
+    rotor = examined.rotor
+    table.add_row("rotor", Text(rotor_words(rotor)))
+    sidebands = sideband_words(rotor)
+    if sidebands is not None:
+        table.add_row("sidebands", Text(sidebands))
+    for reason in rotor.reasons:
+        table.add_row("rotor because", Text(reason))
+    if examined.supply is not None:
+        for words in supply_words(examined.supply):
+            table.add_row("supply", Text(words))

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from core.condition.measuring.observing import Examined
 from core.machines.motor_file.writer import write_motor
 from core.machines.parameters import ParametersSource
 from core.quality.finding import QualityFinding
@@ -18,6 +19,7 @@ from service.cli.output import results
 from service.cli.recordings.diagnose import _table
 from testing.machines.motors import REFERENCE
 from testing.machines.phase_circuits import Fault, recording, running
+from testing.service.examined import SHORT_RECORD
 from testing.service.plants import undiagnosable
 
 CLIPPED = "IA reads its full scale in 12 samples"
@@ -32,7 +34,8 @@ def test_what_keeps_a_record_from_being_diagnosed_is_said_once(capsys: pytest.Ca
             QualityFinding("duration", 1.0, 0.2, "s", passed=True, message="long enough"),
         ),
     )
-    results().print(_table(Path("HR_1.CFG"), Path("motor.toml"), ParametersSource.GIVEN, diagnosis))
+    examined = Examined(diagnosis, None, SHORT_RECORD, None)
+    results().print(_table(Path("HR_1.CFG"), Path("motor.toml"), ParametersSource.GIVEN, examined))
     shown = capsys.readouterr().out
     assert shown.count(CLIPPED) == 1
     assert "motor.toml" in shown
@@ -110,3 +113,25 @@ def test_a_nameplate_alone_asks_to_be_commissioned_and_calls_nothing_a_fault(
         assert low <= 0.06 <= high
     assert main(["diagnose", str(record)]) == 0
     assert "typical; collecting; commission me" in capsys.readouterr().out
+
+
+def test_rotor_and_supply_are_told_beside_the_stator(
+    pump: Callable[..., Path], capsys: pytest.CaptureFixture[str]
+) -> None:
+    record = pump("PUMP", 0.6)
+    assert main(["diagnose", str(record), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert set(found["rotor"]) == {
+        "state", "lower_sideband_dB", "upper_sideband_dB", "severity_dB", "severity_dB_ci95",
+        "detection_limit_dB", "slip", "load_level", "load_bin", "duration_s", "load_oscillation_dB",
+        "reasons",
+    }  # fmt: skip
+    assert found["rotor"]["state"] == "healthy"
+    assert found["rotor"]["severity_dB"] < found["rotor"]["detection_limit_dB"] < -40.0
+    assert found["supply"]["line_voltages_V"] == pytest.approx([380.0] * 3, rel=0.01)
+    assert found["supply"]["frequency_hz"] == pytest.approx(50.0, abs=0.01)
+
+    assert main(["diagnose", str(record)]) == 0
+    shown = capsys.readouterr().out
+    assert "would be seen" in shown
+    assert "unbalance" in shown

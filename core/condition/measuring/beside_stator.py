@@ -1,0 +1,94 @@
+"""Rotor and supply of a record, beside its stator: no error of theirs takes the diagnosis away."""
+
+from core.diagnosis.acceptance import Acceptance, Accepted
+from core.diagnosis.verdict import Diagnosis, not_finite
+from core.machines.parameters import Motor
+from core.operation import Operation
+from core.recordings import Recording, RecordingError
+from core.rotor.examining import examine_rotor
+from core.rotor.finding import RotorFinding, RotorState
+from core.supply.figures import SupplyFigures
+from core.supply.measuring import measure_supply
+
+
+def rotor_of(recording: Recording, accepted: Accepted | None, diagnosis: Diagnosis) -> RotorFinding:
+    """Tell what a record shows of the rotor.
+
+    Parameters
+    ----------
+    recording : Recording
+        The recording.
+    accepted : Accepted or None
+        The record after the quality gate; None where it was refused.
+    diagnosis : Diagnosis
+        Its diagnosis.
+
+    Returns
+    -------
+    RotorFinding
+        The finding. Where the record was refused, or its figures cannot be computed, its state is
+        unsupported and its reasons say why.
+    """
+    if accepted is None:
+        return _unsupported(recording, "the quality gate refused the record")
+    try:
+        finding = examine_rotor(accepted, diagnosis)
+    except (ValueError, ArithmeticError) as error:  # so are SignalError and numpy's LinAlgError
+        return _unsupported(recording, f"the figures of the rotor cannot be computed: {error}")
+    impossible = not_finite(finding.as_dict())
+    if impossible is None:
+        return finding
+    return _unsupported(recording, f"the figures of the rotor cannot be computed: {impossible} is not finite")
+
+
+def supply_of(
+    recording: Recording, motor: Motor, acceptance: Acceptance
+) -> tuple[SupplyFigures | None, str | None]:
+    """Measure the supply where a motor runs or stands.
+
+    Parameters
+    ----------
+    recording : Recording
+        The recording.
+    motor : Motor
+        Nameplate, channel names and ratios of the motor.
+    acceptance : Acceptance
+        What the quality gate says of the record.
+
+    Returns
+    -------
+    SupplyFigures or None
+        The figures; None where the record has no voltages, shows no steady supply, or they cannot be
+        computed.
+    str or None
+        Why they cannot be computed.
+    """
+    if acceptance.accepted is None and acceptance.operation is not Operation.NOT_RUNNING:
+        return None, None
+    try:
+        figures = measure_supply(recording, motor)
+    except RecordingError:
+        return None, None
+    except (ValueError, ArithmeticError) as error:
+        return None, f"the figures of the supply cannot be computed: {error}"
+    impossible = not_finite(figures.as_dict())
+    if impossible is None:
+        return figures, None
+    return None, f"the figures of the supply cannot be computed: {impossible} is not finite"
+
+
+def _unsupported(recording: Recording, reason: str) -> RotorFinding:
+    return RotorFinding(
+        state=RotorState.UNSUPPORTED,
+        lower_sideband_dB=None,
+        upper_sideband_dB=None,
+        severity_dB=None,
+        severity_dB_ci95=None,
+        detection_limit_dB=None,
+        slip=None,
+        load_level=None,
+        load_bin=None,
+        duration_s=recording.duration_s,
+        load_oscillation_dB=None,
+        reasons=(reason,),
+    )
