@@ -188,9 +188,11 @@ class JobRows(Sessions):
             diagnose_rows(session, recording.id, now_ns)
             keep_observation(session, recording.id, recording.motor, observation)
             keep_start(session, recording.id, recording.motor, recorded_ns, start)
+            shown = (session, recording.id, recording.motor, recorded_ns)
             counts = left_out is None
-            keep_rotor_finding(session, recording.id, recording.motor, recorded_ns, rotor if counts else None)
-            keep_supply(session, recording.id, recording.motor, recorded_ns, supply if counts else None)
+            tells_of_rotor = counts and diagnosis.verdict is not Verdict.UNDIAGNOSABLE
+            keep_rotor_finding(*shown, rotor if tells_of_rotor else None)
+            keep_supply(*shown, supply if counts else None)
             if diagnosis.operation in AT_REST:
                 note_standstill(session, recording.motor, min(recorded_ns, now_ns))
             return True

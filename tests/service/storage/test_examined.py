@@ -9,7 +9,7 @@ from service.storage import NotFoundError, Repository
 from service.storage.records import Actor
 from service.storage.states import DeletedBy
 from testing.service.examined import BROKEN_ROTOR, SHORT_RECORD, SOUND_ROTOR, SUPPLY, ExaminedRecordings
-from testing.service.plants import NOW_NS, SECOND_NS
+from testing.service.plants import NOW_NS, SECOND_NS, undiagnosable
 
 PERSON = Actor("ada", "tests")
 AT_REST = replace(
@@ -80,6 +80,13 @@ def test_a_record_of_an_impossible_time_is_in_no_trend(recorded: ExaminedRecordi
     recorded.add(SOUND_ROTOR, SUPPLY, left_out="its time lies in the future")
     assert recorded.repository.rotor_trend("PUMP-A1", limit=10).items == ()
     assert recorded.repository.supply_trend("PUMP-A1", limit=10).items == ()
+
+
+def test_a_record_that_was_refused_tells_nothing_of_the_rotor(recorded: ExaminedRecordings) -> None:
+    recorded.add(SHORT_RECORD, AT_REST, diagnosis=undiagnosable())
+    assert recorded.repository.rotor_trend("PUMP-A1", limit=10).items == ()
+    (entry,) = recorded.repository.supply_trend("PUMP-A1", limit=10).items
+    assert entry.figures == AT_REST
 
 
 def test_a_person_deletes_both_with_the_recording_and_a_rule_does_not(recorded: ExaminedRecordings) -> None:
