@@ -9,15 +9,13 @@ from service.storage.repository.alarms import AlarmRows
 from service.storage.repository.audit.trail import AuditRows
 from service.storage.repository.backups import BackupRows
 from service.storage.repository.baselines import BaselineRows
-from service.storage.repository.change_stamps import ChangeStampRows
-from service.storage.repository.condition_days import ConditionDayRows
 from service.storage.repository.condition_events import ConditionEventRows
 from service.storage.repository.conditions import ConditionRows
 from service.storage.repository.deletions import DeletionRows
 from service.storage.repository.findings import FindingsRows
-from service.storage.repository.fleet import FleetRows
 from service.storage.repository.folders import FolderRows
 from service.storage.repository.folding import FoldingRows
+from service.storage.repository.history.condition_days import ConditionDayRows
 from service.storage.repository.history.conditions import PastConditionRows
 from service.storage.repository.history.neighbours import NeighbourRows
 from service.storage.repository.history.rotor import RotorRows
@@ -57,7 +55,6 @@ class Repository(
     JobRows,
     JobRunnerRows,
     MotorHealthRows,
-    FleetRows,
     MotorVersionRows,
     SeenRecordRows,
     StartRows,
@@ -72,7 +69,6 @@ class Repository(
     ConditionRows,
     FoldingRows,
     StateCounts,
-    ChangeStampRows,
     MeasurementRows,
     BaselineRows,
     DeletionRows,

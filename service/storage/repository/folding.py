@@ -37,8 +37,8 @@ from service.storage.records import (
     RecordObservation,
 )
 from service.storage.repository.alarms.conditions import settle_alarm
-from service.storage.repository.condition_days import keep_days
 from service.storage.repository.fold_marks import EARLIEST_NS, mark, others_of_bus, resume
+from service.storage.repository.history.condition_days import keep_days
 from service.storage.repository.observations import OBSERVED, record_observation, take_in_again
 from service.storage.repository.sessions import Sessions, found, only, record_of
 from service.storage.repository.standing_changes import TOLD, is_material

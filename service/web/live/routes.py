@@ -17,7 +17,7 @@ from service.api.access.callers import Asking, Caller
 from service.api.access.requirements import require
 from service.api.context import ApiContext, Context
 from service.api.problems import BusyError, WrongFieldError
-from service.storage.repository.change_stamps import Subject
+from service.storage.repository.overviews.change_stamps import Subject
 from service.timing.database_silence import does_not_answer
 from service.web.addresses import address
 from service.web.live.bus import LiveBus

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from service.storage.repository.change_stamps import Subject
+from service.storage.repository.overviews.change_stamps import Subject
 
 OF_MOTOR = "motor"
 LONGEST = 300

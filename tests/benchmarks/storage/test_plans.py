@@ -14,7 +14,7 @@ from benchmarks.storage.server import api_on
 from core.units import NANOSECONDS_PER_DAY
 from service.storage import Repository, connect
 from service.storage.models import Base
-from service.storage.repository.change_stamps import Subject
+from service.storage.repository.overviews.change_stamps import Subject
 from testing.service.database import make_database
 
 AMOUNTS = Amounts.of(4_000, motors=12)

@@ -1,1 +1,1 @@
-"""A motor's past, for pages and reports: its trend at any scale, its records' phasors, its starts."""
+"""A motor's past, for pages and reports: its trend at any scale, what its records showed, starts, days."""

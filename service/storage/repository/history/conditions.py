@@ -8,6 +8,7 @@ from sqlalchemy.orm import aliased
 
 from service.storage.models import ConditionChangeRow, MotorRow, ObservationRow
 from service.storage.records import ConditionChange, ConditionPoint
+from service.storage.repository.observations import point
 from service.storage.repository.sessions import Sessions, columns_of
 
 
@@ -38,7 +39,7 @@ class PastConditionRows(Sessions):
             .order_by(MotorRow.name)
         )
         with self._read() as session:
-            return {motor: _point(*values) for motor, *values in session.execute(query)}
+            return {motor: point(*values) for motor, *values in session.execute(query)}
 
     def condition_changes_between(
         self, from_ns: int, to_ns: int, *, limit: int
@@ -58,10 +59,6 @@ class PastConditionRows(Sessions):
         with self._read() as session:
             rows = session.execute(query).all()
         return tuple(_change(*row) for row in reversed(rows))
-
-
-def _point(*values: Any) -> ConditionPoint:
-    return ConditionPoint(**dict(zip(ConditionPoint.__dataclass_fields__, values, strict=True)))
 
 
 def _change(*values: Any) -> ConditionChange:

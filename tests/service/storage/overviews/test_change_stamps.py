@@ -10,7 +10,7 @@ from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from service.storage.change_counter import ChangeCounter
 from service.storage.records import Actor, Role
-from service.storage.repository.change_stamps import Subject
+from service.storage.repository.overviews.change_stamps import Subject
 from service.storage.states import AlarmKind, LinkState
 from testing.service.conditions import FAULT, tell
 from testing.service.following import FAN, PUMP, Recorder
