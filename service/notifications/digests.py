@@ -9,14 +9,11 @@ from core.units import NANOSECONDS_PER_SECOND
 from service.condition.staleness import stale_after_ns
 from service.configuration.notifications import Digest
 from service.configuration.settings import Settings
-from service.notifications.hours import latest_due, local
+from service.notifications.due import due_now
 from service.senders.sending import recipients
 from service.storage import Repository
 from service.storage.records import MotorHealth, NewNotification
 from service.storage.states import LinkState, NotificationKind
-
-LATEST = timedelta(hours=12)
-"""A digest that no service could make in time is made up for within this time, if there was one then."""
 
 MOST_NAMED = 20
 """So many motors and relays are named; the others are counted."""
@@ -27,19 +24,9 @@ WORST_FIRST = (*BAD_FIRST, *(state for state in State if state not in BAD_FIRST)
 
 
 def due_digests(settings: Settings, repository: Repository, now_ns: int) -> Iterator[NewNotification]:
-    """Yield the messages of the digests that are due and not made yet.
-
-    None of a time before the service first started, which the audit trail begins with: nothing can be said of
-    it.
-    """
+    """Yield the messages of the digests that are due and not made yet. Raises SQLAlchemyError."""
     wanted = settings.notifications
-    at = local(now_ns, wanted.time_zone)
-    latest = [(digest, latest_due(digest, at)) for digest in wanted.digests]
-    began_ns = repository.first_audit_entry_ns() if latest else None
-    for digest, due in latest:
-        is_before_the_service = began_ns is not None and due.timestamp() * NANOSECONDS_PER_SECOND < began_ns
-        if at - due > LATEST or is_before_the_service:
-            continue
+    for digest, due in due_now(wanted.digests, wanted.time_zone, repository, now_ns):
         missing = [
             (channel, recipient, key)
             for channel in digest.channels

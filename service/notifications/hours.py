@@ -4,7 +4,7 @@ from datetime import datetime, timedelta
 from zoneinfo import ZoneInfo
 
 from core.units import NANOSECONDS_PER_SECOND
-from service.configuration.notifications import DAYS, Digest, Hours
+from service.configuration.notifications import DAYS, Hours
 
 DAY = timedelta(days=1)
 
@@ -31,15 +31,6 @@ def next_begin(hours: Hours, at: datetime) -> int:
         if DAYS[begin.weekday()] in hours.days and begin > at:
             return _ns(begin)
     raise AssertionError("hours have at least one day a week")
-
-
-def latest_due(digest: Digest, at: datetime) -> datetime:
-    """Return when a digest was due last, at a local time or before."""
-    for ago in range(8):
-        due = datetime.combine(at.date() - ago * DAY, digest.at, at.tzinfo)
-        if due <= at and (digest.period == "daily" or DAYS[due.weekday()] == digest.day):
-            return due
-    raise AssertionError("a digest is due every week")
 
 
 def _ns(at: datetime) -> int:

@@ -1,57 +1,29 @@
 """Reports by mail: which are due, and each made when its message is sent."""
 
 from collections.abc import Iterator, Mapping
-from datetime import datetime, timedelta
+from datetime import datetime
 
 from core.units import NANOSECONDS_PER_SECOND
-from service.configuration.notifications import DAYS
 from service.configuration.reports import ReportMail
 from service.configuration.settings import Settings
-from service.notifications.hours import local
+from service.notifications.due import due_now
 from service.reports.times import month_at, month_before
 from service.senders.sending import recipients
 from service.storage import Repository
 from service.storage.records import NewNotification
 from service.storage.states import NotificationKind
 
-LATEST = timedelta(hours=12)
-"""A report that no service could send in time is made up for within this time."""
-
-LOOKED_BACK_DAYS = 32
-
 
 def due_reports(settings: Settings, repository: Repository, now_ns: int) -> Iterator[NewNotification]:
-    """Yield the messages of the reports that are due and not made yet. Raises SQLAlchemyError.
-
-    None of a time before the service first started, which the audit trail begins with.
-    """
-    mails = settings.reports.mails
-    at = local(now_ns, settings.notifications.time_zone)
-    latest = [(mail, due) for mail in mails if at - (due := latest_due(mail, at)) <= LATEST]
-    began_ns = repository.first_audit_entry_ns() if latest else None
-    for mail, due in latest:
-        if began_ns is not None and due.timestamp() * NANOSECONDS_PER_SECOND < began_ns:
-            continue
-        for document in _documents(mail, due, settings.notifications.time_zone):
+    """Yield the messages of the reports that are due and not made yet. Raises SQLAlchemyError."""
+    zone = settings.notifications.time_zone
+    for mail, due in due_now(settings.reports.mails, zone, repository, now_ns):
+        for document in _documents(mail, due, zone):
             for channel in mail.channels:
                 for recipient in recipients(settings.notifications.channels[channel]):
                     key = _key(document, due, channel, recipient)
                     if not repository.is_known_notification(key):
                         yield NewNotification(NotificationKind.REPORT, channel, recipient, document, key)
-
-
-def latest_due(mail: ReportMail, at: datetime) -> datetime:
-    """Return when a mail was due last, at a local time or before."""
-    for ago in range(LOOKED_BACK_DAYS):
-        due = datetime.combine(at.date() - timedelta(days=ago), mail.at, at.tzinfo)
-        is_its_day = {
-            "daily": True,
-            "weekly": DAYS[due.weekday()] == mail.day,
-            "monthly": due.day == 1,
-        }[mail.period]
-        if due <= at and is_its_day:
-            return due
-    raise AssertionError("a report is due every month")
 
 
 def _documents(mail: ReportMail, due: datetime, zone: str) -> Iterator[Mapping[str, object]]:

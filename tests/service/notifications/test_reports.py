@@ -15,8 +15,9 @@ from service.application.parts import running
 from service.audit.actions import AuditAction
 from service.configuration.reports import ReportMail
 from service.configuration.settings import Settings
+from service.notifications.due import latest_due
 from service.notifications.messages.writing import message_of
-from service.notifications.reports import due_reports, latest_due
+from service.notifications.reports import due_reports
 from service.notifications.work import NotificationWork
 from service.senders.mail import mail_document
 from service.storage import Repository

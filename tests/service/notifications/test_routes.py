@@ -8,7 +8,7 @@ import pytest
 
 from core.units import NANOSECONDS_PER_SECOND
 from service.configuration.notifications import Digest, NotificationSettings
-from service.notifications.hours import latest_due
+from service.notifications.due import latest_due
 from service.notifications.routes import targets
 from service.notifications.silent_claims import SilentClaims
 from service.storage.records import NotificationTarget, Occurrence
