@@ -8,8 +8,9 @@ from cmath import exp as cexp
 from cmath import isfinite
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import hypot, pi
+from math import pi
 
+from service.pictures.arrows import draw_arrow
 from service.pictures.looks import PRINT, Look
 from service.pictures.svg import Drawing, Place
 from service.pictures.ticks import figure_ticks
@@ -66,9 +67,9 @@ def asymmetry_picture(title: str, asymmetry: Asymmetry, *, look: Look = PRINT) -
                 stroke=look.muted,
                 stroke_dasharray="3 3",
             )
-        _arrow(drawing, _place(0j, reach), _place(standing, reach), look.ink)
+        draw_arrow(drawing, _place(0j, reach), _place(standing, reach), look.ink)
         if now is not None:
-            _arrow(drawing, _place(standing, reach), _place(now, reach), colour, dashed=True)
+            draw_arrow(drawing, _place(standing, reach), _place(now, reach), colour, dashed=True)
     if not before and not since:
         drawing.text(MIDDLE_X, MIDDLE_Y - 12, "no record yet", anchor="middle", fill=look.muted)
     _legend(drawing, look, asymmetry)
@@ -99,19 +100,6 @@ def _grid(drawing: Drawing, look: Look, reach: float) -> None:
         drawing.line(MIDDLE_X, MIDDLE_Y, x, y, stroke=look.line)
         label_x, label_y = MIDDLE_X + 1.12 * (x - MIDDLE_X), MIDDLE_Y + 1.12 * (y - MIDDLE_Y)
         drawing.text(label_x, label_y + 4, phase, anchor="middle", fill=look.ink, font_weight="bold")
-
-
-def _arrow(drawing: Drawing, begin: Place, end: Place, colour: str, *, dashed: bool = False) -> None:
-    length = hypot(end[0] - begin[0], end[1] - begin[1])
-    if length < 1.0:
-        drawing.circles([end], 3.0, fill=colour)
-        return
-    dash = {"stroke_dasharray": "5 3"} if dashed else {}
-    drawing.line(begin[0], begin[1], end[0], end[1], stroke=colour, stroke_width="2", **dash)
-    direction = complex(end[0] - begin[0], end[1] - begin[1]) / length
-    tip = complex(*end)
-    head = [tip, *(tip - min(8.0, length) * direction * cexp(1j * side * pi / 8) for side in (1, -1))]
-    drawing.path([(one.real, one.imag) for one in head], closed=True, fill=colour)
 
 
 def _legend(drawing: Drawing, look: Look, asymmetry: Asymmetry) -> None:

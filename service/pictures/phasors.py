@@ -1,11 +1,11 @@
 """Phasors as arrows: voltages and currents in one picture, each scaled to the largest of its own unit."""
 
-from cmath import exp as cexp
 from cmath import isfinite
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import atan2, degrees, pi
+from math import atan2, degrees
 
+from service.pictures.arrows import dashes, draw_arrow
 from service.pictures.looks import PRINT, Look
 from service.pictures.svg import Drawing
 
@@ -47,7 +47,7 @@ def phasor_picture(title: str, phasors: Sequence[Phasor], *, look: Look = PRINT)
             reach = RADIUS * (1.0 if at == 0 else 0.72) * length
             _arrow(drawing, one, reach, colour, dashed=at > 0)
         y = 30 + 19 * number
-        dash = {"stroke_dasharray": "5 3"} if at > 0 else {}
+        dash = dashes(dashed=at > 0)
         drawing.line(SIZE - 6, y - 4, SIZE + 14, y - 4, stroke=colour, stroke_width="2", **dash)
         drawing.text(SIZE + 20, y, _words(one), fill=look.ink, font_size="11")
     if not known:
@@ -58,12 +58,7 @@ def phasor_picture(title: str, phasors: Sequence[Phasor], *, look: Look = PRINT)
 def _arrow(drawing: Drawing, phasor: Phasor, reach: float, colour: str, *, dashed: bool) -> None:
     direction = phasor.value / abs(phasor.value)
     end = reach * direction
-    dash = {"stroke_dasharray": "5 3"} if dashed else {}
-    drawing.line(
-        MIDDLE, MIDDLE, MIDDLE + end.real, MIDDLE - end.imag, stroke=colour, stroke_width="2", **dash
-    )
-    head = [end, *(end - 9.0 * direction * cexp(1j * side * pi / 9) for side in (1, -1))]
-    drawing.path([(MIDDLE + one.real, MIDDLE - one.imag) for one in head], closed=True, fill=colour)
+    draw_arrow(drawing, (MIDDLE, MIDDLE), (MIDDLE + end.real, MIDDLE - end.imag), colour, dashed=dashed)
     label = (reach + 14.0) * direction
     drawing.text(
         MIDDLE + label.real,
