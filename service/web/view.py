@@ -37,10 +37,22 @@ class View:
         headers = self.request.headers
         return headers.get("hx-request") == "true" and headers.get("hx-boosted") != "true"
 
-    def page(self, template: str, *, title: str, status: int = HTTPStatus.OK, **data: object) -> HTMLResponse:
-        """Return a whole page. The template extends base.html."""
+    def page(
+        self,
+        template: str,
+        *,
+        title: str,
+        live: str | None = None,
+        status: int = HTTPStatus.OK,
+        **data: object,
+    ) -> HTMLResponse:
+        """Return a whole page. The template extends base.html.
+
+        live: where the page is told of changes (`live_address`); None where it is not.
+        """
         known = {
             "title": title,
+            "live": live,
             "links": links_for(self.asking.permissions, self.request.url.path),
             "user": None if self.asking.way is Way.NONE else self.asking.actor.name,
             "notice": notice(self.request.query_params.get("done")),
