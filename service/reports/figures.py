@@ -6,6 +6,11 @@ from service.storage.records import ConditionFigures
 NOTHING = "-"
 
 
+def number(value: object) -> float | None:
+    """Return a figure of a stored document; None where it has none."""
+    return float(value) if isinstance(value, int | float) else None
+
+
 def share(value: float | None) -> str:
     """Return a share of one in percent."""
     return NOTHING if value is None else f"{100 * value:.2f} %"

@@ -7,7 +7,7 @@ from core.condition.kinds import Kind, State
 from core.time_words import clock, day
 from service.condition.staleness import Missing, missing, stale_after_ns
 from service.condition.wording import advice_now, expected, finding, level_ahead, since
-from service.reports.figures import share
+from service.reports.figures import number, share
 from service.reports.source import ReportSource
 from service.storage import Repository
 from service.storage.records import ConditionFigures, ConditionPoint, MotorHealth
@@ -67,8 +67,7 @@ class ReportedMotor:
     @property
     def ahead(self) -> float | None:
         """Return the level that the forecast is about; None where that is not known."""
-        found = self._forecast.get("limit")
-        return float(found) if isinstance(found, int | float) else None
+        return number(self._forecast.get("limit"))
 
     def expected(self, now_ns: int, zone: str, limit: float | None) -> str:
         """Return when the level ahead is reached; "" without a trend. limit: the motor's."""
@@ -86,14 +85,12 @@ class ReportedMotor:
     @property
     def detectable(self) -> float | None:
         """Return the least change that would be seen; None where it is not known."""
-        found = self.reference.get("detectable")
-        return float(found) if isinstance(found, int | float) else None
+        return number(self.reference.get("detectable"))
 
     @property
     def standing_path_ratio(self) -> float:
         """Return the path of the turns that would explain the standing asymmetry; 0 if unknown."""
-        found = self.reference.get("standing_path_ratio")
-        return float(found) if isinstance(found, int | float) else 0.0
+        return number(self.reference.get("standing_path_ratio")) or 0.0
 
     @property
     def since_ns(self) -> int | None:

@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
-from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,9 +11,7 @@ from numpy.typing import NDArray
 from core.machines.parameters import Motor
 from core.recordings import Channel, Recording, read
 from core.signals.terminals import LINES, PHASES, Terminals, terminals
-
-MOST_VALUES: Final = 8_000_000
-"""Longer recordings are not diagnosed, and not held in memory for a look at their samples either."""
+from service.condition.healthy_records import MOST_VALUES
 
 
 class Group(StrEnum):

@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 from core.diagnosis.verdict import FittedParameters
 from core.machines.parameters import Motor
 from core.recordings import RecordingError, read
-from service.condition.healthy_records import learnt
-from service.waveforms.opened import MOST_VALUES
+from service.condition.healthy_records import MOST_VALUES, learnt
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,6 +2,7 @@
 
 from cmath import phase
 from collections.abc import AsyncIterator, Iterator
+from dataclasses import dataclass
 from math import degrees
 from typing import Annotated, Any
 from uuid import UUID
@@ -55,13 +56,23 @@ Seconds = Annotated[
 Points = Annotated[int, Query(ge=2, le=MOST_POINTS, description="Most values a column.")]
 
 
+@dataclass(frozen=True, slots=True)
+class Part:
+    """A part of a recording, from one time to another, and how finely it is wanted."""
+
+    from_s: Seconds = None
+    to_s: Seconds = None
+    points: Points = 4000
+
+
+WantedPart = Annotated[Part, Depends()]
+
+
 @router.get("/samples", response_class=Response, responses=_BINARY, dependencies=[require(Permission.VIEW)])
 async def get_samples(
     context: Context,
     recording_id: UUID,
-    from_s: Seconds = None,
-    to_s: Seconds = None,
-    points: Points = 4000,
+    part: WantedPart,
 ) -> Response:
     """Return a part of a recording as single-precision numbers: its samples, or extremes where they are more.
 
@@ -70,7 +81,7 @@ async def get_samples(
     """
 
     def seen(entry: RecordingEntry, shown: Opened) -> bytes:
-        window = window_of(shown, _within(context, points, len(shown.channels)), from_s, to_s)
+        window = window_of(shown, _within(context, part.points, len(shown.channels)), part.from_s, part.to_s)
         return encoded(window, _about(entry, shown))
 
     return Response(await of_recording(context, str(recording_id), seen), media_type=BINARY)
@@ -80,9 +91,7 @@ async def get_samples(
 async def get_model(
     context: Context,
     recording_id: UUID,
-    from_s: Seconds = None,
-    to_s: Seconds = None,
-    points: Points = 4000,
+    part: WantedPart,
 ) -> Response:
     """Return the currents that the latest diagnosis's fit draws, and what they leave of the measured ones.
 
@@ -93,7 +102,7 @@ async def get_model(
     def drawn() -> bytes:
         entry = context.repository.recording(str(recording_id))
         replayed = context.recorded.replay(entry, context.repository.current_diagnosis(entry.id))
-        window = modelled_window(replayed, points, from_s, to_s)
+        window = modelled_window(replayed, part.points, part.from_s, part.to_s)
         return encoded(window, {"recording_id": entry.id, "residual_rms_A": replayed.residual_rms_A})
 
     return Response(await in_turn(context, drawn), media_type=BINARY)

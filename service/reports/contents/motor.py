@@ -12,7 +12,7 @@ from service.condition.wording import cause
 from service.reports.contents.motor_pictures import motor_pictures
 from service.reports.contents.nameplate import nameplate_facts
 from service.reports.document import Block, Column, ColumnKind, Content, Facts, ReportDocument, Table, Words
-from service.reports.figures import NOTHING, interval, share
+from service.reports.figures import NOTHING, interval, number, share
 from service.reports.motors import ReportedMotor, reported
 from service.reports.source import ReportSource
 from service.storage import Repository
@@ -129,7 +129,7 @@ def _figures(motor: ReportedMotor, zone: str) -> Facts:
         ("least change that would be seen", share(motor.detectable)),
         (
             "standing asymmetry judged from all records, as a fault level",
-            share(_number(reference.get("standing"))),
+            share(number(reference.get("standing"))),
         ),
         ("records of the reference", str(reference.get("records", NOTHING))),
         ("growth", NOTHING if not isinstance(growth, float) else f"{100 * growth:.4f} % a day"),
@@ -221,7 +221,3 @@ def _until(pages: _Pages[Item], until_ns: int) -> Sequence[Item]:
     """Return the latest items of a list until a time, latest first."""
     found = [one for one in pages(limit=LOOKED_THROUGH).items if one.time_ns <= until_ns]
     return found[:MOST_LISTED]
-
-
-def _number(found: object) -> float | None:
-    return float(found) if isinstance(found, int | float) else None

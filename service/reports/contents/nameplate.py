@@ -2,14 +2,8 @@
 
 from collections.abc import Sequence
 
-from core.machines.parameters import Motor, ParametersSource
-
-SOURCES = {
-    ParametersSource.GIVEN: "given in the motors file",
-    ParametersSource.COMMISSIONED: "estimated from recorded starts",
-    ParametersSource.DATA_SHEET: "taken from the data sheet",
-    ParametersSource.TYPICAL: "typical of the rating: nothing but the nameplate is known",
-}
+from core.machines.parameters import Motor
+from service.condition.parameter_sources import SOURCES
 
 
 def nameplate_facts(motor: Motor) -> Sequence[tuple[str, str]]:

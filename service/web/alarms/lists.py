@@ -11,6 +11,7 @@ from service.storage.alarm_transitions import possible_for_people
 from service.storage.records import Alarm, Page
 from service.storage.states import AlarmEvent, AlarmState
 from service.web.addresses import address
+from service.web.choices import site_names
 
 MOST_SHOWN: Final = 50
 """So many alarms are on a page. The form that acknowledges all of them, with a comment, is small enough."""
@@ -133,7 +134,7 @@ def alarm_list(repository: Repository, choice: AlarmChoice, *, refused: Sequence
         ],
         lines=[line_of(alarm) for alarm in found.items],
         next_path=choice.further(None if found.next is None else encode(found.next)),
-        sites=[site.name for site in repository.sites(limit=1000).items],
+        sites=site_names(repository),
         refused=_known(repository, refused),
         calling=numbers.get(AlarmState.UNACKNOWLEDGED, 0),
     )

@@ -1,23 +1,17 @@
 """What is known of a motor by its nameplate and its parameters, and where that comes from."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from core.machines.parameters import Connection, Motor, ParametersSource
+from core.machines.parameters import Connection, Motor
 from core.quantity_text import with_unit
 from service.condition.motor_data import motor_known
+from service.condition.parameter_sources import SOURCES
 from service.storage.records import MotorVersion
 from service.web.words import percent
 
 DIGITS: Final = 4
-
-SOURCES: Final[Mapping[ParametersSource, str]] = {
-    ParametersSource.GIVEN: "given in the motors file",
-    ParametersSource.COMMISSIONED: "estimated from a recorded start of this motor (mcc commission)",
-    ParametersSource.DATA_SHEET: "from its data sheet (mcc parameters)",
-    ParametersSource.TYPICAL: "typical of its rating: nobody measured this motor, so it is on watch at most",
-}
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,9 +5,10 @@ from dataclasses import dataclass
 from math import isfinite, sqrt
 from typing import Final
 
-from core.machines.parameters import Connection, Limits, Nameplate, ParametersSource
+from core.machines.parameters import Connection, Limits, Nameplate
 from core.units import NANOSECONDS_PER_HOUR
 from service.api.pages import decode, encode
+from service.condition.parameter_sources import SOURCES
 from service.storage import Repository
 from service.storage.records import Sample
 from service.storage.records.overviews import MotorOverview
@@ -27,13 +28,6 @@ FREQUENCY_BAND: Final = (0.95, 1.03)
 
 LINE_VOLTAGES: Final = ("vab_V", "vbc_V", "vca_V")
 PHASE_VOLTAGES: Final = ("va_V", "vb_V", "vc_V")
-
-SOURCE_WORDS: Final[Mapping[ParametersSource, str]] = {
-    ParametersSource.GIVEN: "given in the file",
-    ParametersSource.COMMISSIONED: "estimated from its starts",
-    ParametersSource.DATA_SHEET: "from a data sheet",
-    ParametersSource.TYPICAL: "typical of its rating: nothing else is known",
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +63,7 @@ class MotorLine:
     @property
     def source_words(self) -> str:
         """Return where its parameters come from."""
-        return SOURCE_WORDS[self.overview.motor.parameters_source]
+        return SOURCES[self.overview.motor.parameters_source]
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,6 +20,7 @@ from service.api.samples.opening import in_turn
 from service.api.schemas import DiagnosisRequest
 from service.storage.states import RecordingState
 from service.web.addresses import address
+from service.web.choices import motor_names
 from service.web.recording.comparison import comparison
 from service.web.recording.drawn_model import drawn_model
 from service.web.recording.page_data import MOST_CHOICES, cursor_of, recording_page
@@ -69,15 +70,14 @@ def _list(
 ) -> Response:
     """Return the list. refused: files that were brought and not taken. Raises NotFoundError, ProblemError."""
     repository = view.context.repository
-    chosen = motor
-    view.context.require_motor(chosen)
+    view.context.require_motor(motor)
     state = next((one for one in RecordingState if one == show), None)
     operation = None if state is not None else next((one for one in Operation if one == show), None)
     if show is not None and state is None and operation is None:
         expected = ", ".join(dict.fromkeys([*RecordingState, *Operation]))
         raise WrongFieldError("query.show", f"expected one of {expected}, found {show!r}")
     found = repository.recordings(
-        motor=chosen, state=state, operation=operation, limit=ROWS, after=decode(cursor, int, str)
+        motor=motor, state=state, operation=operation, limit=ROWS, after=decode(cursor, int, str)
     )
     verdicts = repository.verdicts([one.id for one in found.items])
     later = None if found.next is None else encode(found.next)
@@ -85,11 +85,11 @@ def _list(
         "recording/list.html",
         status=HTTPStatus.OK if refused is None else HTTPStatus.UNPROCESSABLE_ENTITY,
         refused=refused,
-        title="Recordings" if chosen is None else f"Recordings of {chosen}",
+        title="Recordings" if motor is None else f"Recordings of {motor}",
         recordings=found.items,
         verdicts=verdicts,
-        motors=sorted(repository.schedules()),
-        motor=chosen,
+        motors=motor_names(repository),
+        motor=motor,
         chosen_show=state or operation,
         states=[*RecordingState],
         operations=[*Operation],
@@ -97,7 +97,7 @@ def _list(
         is_later_page=bool(cursor),
         next_page=None
         if later is None
-        else address("/recordings", motor=chosen, show=state or operation, cursor=later, **{"with": with_}),
+        else address("/recordings", motor=motor, show=state or operation, cursor=later, **{"with": with_}),
         look_of=look_of,
         words_of=words_of,
     )

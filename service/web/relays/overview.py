@@ -12,6 +12,7 @@ from service.storage.records import Alarm, GatewayEntry, IedEntry, LinkChange, L
 from service.storage.records.overviews import RelayOverview
 from service.storage.states import ClockQuality, LinkState
 from service.web.addresses import address
+from service.web.choices import site_names
 from service.web.relays.certificates import CertificateEnd, certificate_ends
 from service.web.relays.links import LinkHistory, link_history
 
@@ -186,7 +187,7 @@ def relay_list(repository: Repository, settings: Settings, choice: RelayChoice) 
             if numbers.get(state)
         ],
         lines=[_line(overview, settings) for overview in found.items],
-        sites=[site.name for site in repository.sites(limit=1000).items],
+        sites=site_names(repository),
         next_path=None if found.next is None else choice.further(encode(found.next)),
         gateways=repository.gateways(),
     )

@@ -11,7 +11,7 @@ from service.api.access.requirements import require
 from service.api.reports.answers import TURN, report_answer, until
 from service.reports.times import FleetPeriod, month_at, month_before
 from service.reports.wanted import AlarmsReport, FleetReport, MotorReport, ReportFormat
-from service.web.reports.choices import motor_names, site_names
+from service.web.choices import motor_names, site_names
 from service.web.view import Looking
 
 router = APIRouter()

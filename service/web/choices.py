@@ -1,4 +1,4 @@
-"""What a report may be of: the plant's motors and sites."""
+"""What pages may be narrowed to, and reports be of: the plant's motors and sites."""
 
 from collections.abc import Sequence
 
