@@ -158,6 +158,47 @@ def test_the_demo_motors_are_within_a_percent_of_the_motors_file() -> None:
             assert getattr(plant.parameters, name) == pytest.approx(value, rel=0.0101)
 
 
+def test_a_cage_breaks_over_time_and_the_truth_tells(tmp_path: Path) -> None:
+    cage = "[motor.cage]\nbars = 32\nplaces = [3, 9]\n"
+    cage += "timeline = [{ at_days = 1, broken = 0 }, { at_days = 2, broken = 2 }]\n"
+    gap = "[motor.eccentricity]\nstatic = 0.2\ndynamic = 0.1\n"
+    load = (
+        "[motor.load]\npulsations = [{ depth = 0.1, per_turn = 2 }, { depth = 0.02, at_twice_slip = true }]\n"
+    )
+    relay = read_scenario(write(tmp_path, MINIMAL + cage + gap + load))["R1"]
+    assert relay.truth(0.0)["broken_bars"] == 0
+    late = relay.truth(3 * 86400.0)
+    assert (late["broken_bars"], late["bars"]) == (2, 32)
+    assert late["eccentricity"] == {"static": 0.2, "dynamic": 0.1}
+    assert late["pulsations"] == [{"depth": 0.1, "per_turn": 2.0}, {"depth": 0.02, "twice_slip": True}]
+    assert relay.plant.cage.lost_conductance(2 / 32).nonzero()[0].tolist() == [3, 9]
+    slots = MINIMAL.replace("pole_pairs = 2", "pole_pairs = 2\nrotor_slots = 44")
+    assert read_scenario(write(tmp_path, slots))["R1"].truth(0.0)["bars"] == 44
+
+
+@pytest.mark.parametrize(
+    ("table", "told"),
+    [
+        ("[motor.cage]\nbars = 12\nbroken = 1\n", "12 bars are too few for 2 pole pairs"),
+        ("[motor.cage]\nplaces = [28]\n", "places name a bar above 27, the last of 28"),
+        ("[motor.cage]\nplaces = [1, 1]\n", "places name a bar twice"),
+        ("[motor.cage]\nbroken = 10\n", "10 broken bars of 28 are more than 30%"),
+        (
+            "[motor.cage]\nbroken = 1\ntimeline = [{ at_s = 0, broken = 1 }]\n",
+            "give either broken or timeline",
+        ),
+        (
+            "[motor.load]\npulsations = [{ depth = 0.1 }]\n",
+            "give one of frequency_Hz, per_turn and at_twice_slip",
+        ),
+    ],
+)
+def test_a_rotor_or_load_that_cannot_be_is_refused(tmp_path: Path, table: str, told: str) -> None:
+    with pytest.raises(ScenarioError, match=r"\[motor R1\]") as refused:
+        read_scenario(write(tmp_path, MINIMAL + table))
+    assert told in str(refused.value)
+
+
 def test_motors_of_a_bus_share_its_supply(tmp_path: Path) -> None:
     first = MINIMAL.replace('"R1"', '"R1"\nbus = "MCC"')
     second = MINIMAL.replace('"R1"', '"R2"\nbus = "MCC"').replace("= 380", "= 400")
