@@ -102,6 +102,8 @@ def condition_text(truth: Truth) -> str:
     """Return what is to be known of the motor and its channels: "5 % b", "healthy, VB -0.4 %"."""
     words = ["healthy" if truth.phase is None else f"{plain(100 * truth.mu_f)} % {truth.phase}"]
     words += [] if truth.running else ["stands still"]
+    words += [f"{plain(truth.broken_bars)} of {truth.bars} bars broken"] if truth.broken_bars else []
+    words += ["load pulsates"] if truth.pulsations else []
     words += [f"{name} {100 * channel.gain:+.2g} %" for name, channel in truth.channels.items()]
     return ", ".join(words)
 

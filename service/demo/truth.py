@@ -26,10 +26,20 @@ class ChannelError(BaseModel):
     delay_us: float
 
 
+class PulsationTruth(BaseModel):
+    """A pulsation of the load's torque: its amplitude over the rated torque."""
+
+    model_config = ConfigDict(extra="ignore", frozen=True)
+
+    depth: float
+
+
 class Truth(BaseModel):
     """Condition of one simulated motor: equivalent fault level, faulted winding, load over rated torque.
 
     running: False where it stands still.
+    broken_bars: number of broken bars of the cage, of `bars`.
+    pulsations: those of the load's torque.
     channels: those that have changed since the scenario's beginning.
     """
 
@@ -40,6 +50,9 @@ class Truth(BaseModel):
     theta_f: int | None
     load_level: float
     joint_ohm: float = 0.0
+    broken_bars: float = 0.0
+    bars: int = 28
+    pulsations: tuple[PulsationTruth, ...] = ()
     channels: Mapping[str, ChannelError] = {}
 
     @property
@@ -48,7 +61,7 @@ class Truth(BaseModel):
         return "healthy" if self.theta_f is None else "fault"
 
     def as_dict(self) -> dict[str, object]:
-        """As a document; what is not wrong with joints and channels is left out."""
+        """As a document; what is not wrong with joints, rotor, load and channels is left out."""
         return self.model_dump(exclude_defaults=True)
 
     @property

@@ -9,6 +9,12 @@ import pytest
 
 from core.recordings.cev.compressed_ascii import rows
 from core.recordings.repairs import Repairs
+from core.relay_reports import (
+    read_load_profile,
+    read_motor_starts,
+    read_motor_statistics,
+    read_sequence_of_events,
+)
 from ied_sim.motor.contactor import Contactor
 from ied_sim.profiles.profile import Triggers
 from ied_sim.relay.configuration import RelayConfiguration
@@ -78,7 +84,16 @@ def test_a_start_is_recorded_from_rest_and_told_in_every_report(tmp_path: Path) 
         assert highest is not None
         assert float(highest[1]) < 2 * 1.203 < float(peak[1]), "a start's current is not one of running"
 
+        texts = {name: text(client, f"REPORTS/{name}.TXT") for name in ("SER", "CSER", "MSR", "MOT")}
         found = recordings(fetch(client, "EVENTS", tmp_path / "fetched"))
+    (start,) = read_motor_starts(texts["MSR"])
+    assert start.peak_current_A == pytest.approx(float(peak[1]))
+    assert start.curve_current_A.max() == pytest.approx(float(peak[1]))
+    assert read_motor_statistics(texts["MOT"]).starts == 1
+    for name in ("SER", "CSER"):
+        told = [each for each in read_sequence_of_events(texts[name]) if each.element == "STARTING"]
+        assert [each.asserted for each in told[-2:]] == [True, False]
+        assert abs(told[-2].time_ns - start.time_ns) < 1e8
     for recording in found:
         at = recording.trigger_index or 0
         noise = 0.02
@@ -98,7 +113,14 @@ def test_the_load_profile_has_what_was_metered(tmp_path: Path) -> None:
             assert float(row["VAVE"]) == pytest.approx(380, rel=0.01)
             assert float(row["P"]) == pytest.approx(436, rel=0.03)
             assert float(row["FREQ"]) == pytest.approx(50, abs=0.01)
-        assert len(text(client, "REPORTS/LDP.TXT").splitlines()) >= 7
+        plain = read_load_profile(text(client, "REPORTS/LDP.TXT"))
+        compressed = read_load_profile(text(client, "REPORTS/CLDP.TXT"))
+    assert plain.values["IB_MAG"][0] == pytest.approx(1.203, rel=0.02)
+    rows = plain.time_ns.size
+    assert rows >= 2
+    assert compressed.time_ns[:rows].tolist() == plain.time_ns.tolist()
+    for label, column in plain.values.items():
+        assert compressed.values[label][:rows].tolist() == column.tolist()
 
 
 def test_a_listing_has_the_texts_at_their_size_and_settings_are_offered(tmp_path: Path) -> None:

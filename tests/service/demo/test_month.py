@@ -56,6 +56,11 @@ def test_the_month_is_what_it_says() -> None:
     assert {relay: set(truth.channels) for relay, truth in last.items() if truth.channels} == {
         "A3_SEL710": {"VB"}
     }
+    assert not any(truth.broken_bars for truth in first.values())
+    assert {relay: truth.broken_bars for relay, truth in last.items() if truth.broken_bars} == {
+        "A1_SEL710": 1.0
+    }
+    assert [relay for relay, truth in last.items() if truth.pulsations] == ["B1_SEL710"]
     known = {feeder.ied: feeder.motor for feeder in scl.read(scl.DEMO_PLANT_SCD).feeders()}
     parameters = {str(table["name"]): table["parameters"] for table in motors(MOTORS)}
     for relay, configuration in read_scenario(MONTH).items():

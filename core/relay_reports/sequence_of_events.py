@@ -1,0 +1,105 @@
+"""The sequence of events (SER, CSER): when which element of the relay changed."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from core.relay_reports.clock_times import DateOrder, time_of, time_of_fields
+from core.relay_reports.error import ReportError
+from core.relay_reports.report_text import (
+    Line,
+    after_head,
+    compressed_table,
+    is_compressed,
+    is_empty,
+    report_lines,
+)
+
+ASSERTED, DEASSERTED = "Asserted", "Deasserted"
+_FEWEST_FIELDS = 4
+
+
+@dataclass(frozen=True, slots=True)
+class StateChange:
+    """A change of one element.
+
+    Parameters
+    ----------
+    time_ns : int
+        When, by the relay's clock, as if this were in UTC.
+    element : str
+        Name of the element, or what the relay says of itself, such as "Relay Powered Up".
+    asserted : bool or None
+        Whether it was asserted; None for a message that is no change of an element.
+    """
+
+    time_ns: int
+    element: str
+    asserted: bool | None
+
+
+def read_sequence_of_events(
+    report: bytes | str | Path, *, name: str = "SER", date_order: DateOrder = DateOrder.MDY
+) -> tuple[StateChange, ...]:
+    """Read a sequence of events.
+
+    Parameters
+    ----------
+    report : bytes, str or pathlib.Path
+        The report, plain or Compressed ASCII, or its file.
+    name : str
+        What errors call it.
+    date_order : DateOrder
+        Order of dates in a plain report.
+
+    Returns
+    -------
+    tuple of StateChange
+        The changes, earliest first.
+
+    Raises
+    ------
+    ReportError
+        If the report is none, or cannot be read.
+    OSError
+        If the file cannot be read.
+    """
+    if is_compressed(report, name):
+        changes = _compressed(report, name)
+    else:
+        changes = _plain(report_lines(report, name), name, date_order)
+    # A report has the newest first, and those of one moment in that order, too.
+    changes.reverse()
+    changes.sort(key=lambda change: change.time_ns)
+    return tuple(changes)
+
+
+def _plain(lines: list[Line], name: str, order: DateOrder) -> list[StateChange]:
+    found = list(after_head(lines, "DATE", "TIME", "ELEMENT", "STATE"))
+    if not found:
+        if any(is_empty(line.text) for line in lines):
+            return []
+        raise ReportError(name, "end", expected="a heading with DATE, TIME, ELEMENT, STATE", found="none")
+    changes = []
+    for line, fields in found[1:]:
+        if len(fields) < _FEWEST_FIELDS or not fields[0].isdecimal():
+            raise line.error("", expected="number, date, time, element and state", found=line.text)
+        time_ns = time_of(line, fields[1], fields[2], order)
+        changes.append(_change(time_ns, " ".join(fields[3:-1]), fields[-1]))
+    return changes
+
+
+def _compressed(report: bytes | str | Path, name: str) -> list[StateChange]:
+    table = compressed_table(report, name)
+    changes = []
+    for line, fields in table.rows:
+        by_label = dict(zip(table.labels, fields, strict=True))
+        if "ELEMENT" not in by_label or "STATE" not in by_label:
+            raise line.error("", expected="the columns ELEMENT and STATE", found=",".join(table.labels))
+        changes.append(_change(time_of_fields(line, by_label), by_label["ELEMENT"], by_label["STATE"]))
+    return changes
+
+
+def _change(time_ns: int, element: str, state: str) -> StateChange:
+    if state in (ASSERTED, DEASSERTED) and element:
+        return StateChange(time_ns, element, state == ASSERTED)
+    return StateChange(time_ns, f"{element} {state}".strip(), None)
