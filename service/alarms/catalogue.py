@@ -51,6 +51,25 @@ CATALOGUE: Final[Mapping[AlarmKind, AlarmDescription]] = {
         "two records in a row are healthy (`healthy_records`), `condition-fault` or another kind of "
         "asymmetry takes its place, the motor's reference is restarted, or the motor leaves the plant",
     ),
+    AlarmKind.ROTOR_FAULT: AlarmDescription(
+        AlarmPriority.HIGH,
+        "Two of the latest three records that tell of the rotor show a cage as uneven as broken bars, or a "
+        "broken end ring, make it.",
+        "Broken bars overload their neighbours at each start, and pieces of them may damage the winding.",
+        "Have the cage inspected at the next planned stop, start the motor as seldom as possible until then, "
+        "and compare its starts with earlier ones.",
+        "fewer than two of the latest three records show it; while the rotor is still to be watched, "
+        "`rotor-watch` takes its place. Also when the motor leaves the plant",
+    ),
+    AlarmKind.ROTOR_WATCH: AlarmDescription(
+        AlarmPriority.MEDIUM,
+        "The motor's records show an uneven rotor, or one that is more uneven than it was at the same load.",
+        "It may be the beginning of broken bars, which grow from start to start.",
+        "Have recordings of ten seconds made at half of the rated load or more, and watch the trend of the "
+        "rotor on the motor's page.",
+        "two of the latest three records show an even rotor, and none a fault; `rotor-fault` takes its "
+        "place; or the motor leaves the plant",
+    ),
     AlarmKind.MISSING_DATA: AlarmDescription(
         AlarmPriority.MEDIUM,
         "The motor has no valid record for longer than its schedule promises, and was not seen to stand.",

@@ -18,6 +18,8 @@ class AlarmKind(StrEnum):
     CONDITION_FAULT = "condition-fault"
     CONDITION_FORECAST = "condition-forecast"
     CONDITION_WATCH = "condition-watch"
+    ROTOR_FAULT = "rotor-fault"
+    ROTOR_WATCH = "rotor-watch"
     MISSING_DATA = "missing-data"
     LINK_DOWN = "link-down"
     SITE_LOST = "site-lost"

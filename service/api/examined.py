@@ -5,10 +5,11 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 
 from service.access.permissions import Permission
+from service.alarms.rotor_rules import rotor_advice
 from service.api.access.requirements import require
 from service.api.context import Context
 from service.api.document import Name
-from service.api.examined_schemas import RotorTrendPoint, SupplyTrendPoint
+from service.api.examined_schemas import RotorCondition, RotorTrendPoint, SupplyTrendPoint
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
 from service.api.times import TimeParameter
@@ -18,6 +19,20 @@ From = Annotated[TimeParameter | None, Query(alias="from", description="First ti
 To = Annotated[TimeParameter | None, Query(description="First time not to be included.")]
 
 router = APIRouter(prefix="/motors/{name}", tags=["condition"])
+
+
+@router.get("/rotor", responses=problems(404), dependencies=[require(Permission.VIEW)])
+def get_rotor(context: Context, name: Name) -> RotorCondition:
+    """Return the condition of a motor's rotor, from all its recordings."""
+    condition = context.repository.rotor_condition(name)
+    return RotorCondition.model_validate(
+        {
+            **condition.as_dict(),
+            "motor": name,
+            "since": condition.since_ns,
+            "advice": rotor_advice(condition.state),
+        }
+    )
 
 
 @router.get("/rotor/trend", responses=problems(404), dependencies=[require(Permission.VIEW)])

@@ -41,6 +41,32 @@ class RotorTrendPoint(RotorFinding):
     recording_id: str
 
 
+class RotorLoadBin(Document):
+    """The records of one tenth of the rated load, 0 to 11, with the median severity of its first ones."""
+
+    bin: int
+    records: int
+    baseline_dB: float | None
+
+
+class RotorCondition(Document):
+    """The rotor of a motor, from all its recordings that could tell.
+
+    severity_dB: median of the latest ones. change_dB: against the baseline of the same load. since: first
+    recording that shows this state. advice: what is to be done.
+    """
+
+    motor: str
+    state: RotorState
+    severity_dB: float | None
+    severity_dB_ci95: Interval | None
+    change_dB: float | None
+    since: Time | None
+    bins: Listed[RotorLoadBin]
+    advice: str
+    reasons: Listed[str]
+
+
 class SupplyFigures(Document):
     """What a recording shows of the supply, and of what the motor draws from it.
 

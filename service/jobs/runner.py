@@ -324,6 +324,8 @@ class JobRunner:
                 if not kept:
                     log.warning("a diagnosis came after the lease was lost", recording=job.recording_id)
                     return
+                if rotor is not None:
+                    self._repository.settle_rotor_alarm(claimed.motor, now_ns=now_ns)
                 is_first = not claimed.is_repetition  # a repetition tells of the clock as it was
                 if is_first and claimed.ied is not None and claimed.triggered_ns is not None:
                     record = TriggeredRecord(

@@ -5,7 +5,9 @@ from dataclasses import dataclass
 from typing import Final
 
 from core.rotor.finding import RotorState
+from core.rotor.trend import RotorCondition
 from core.units import NANOSECONDS_PER_SECOND
+from service.alarms.rotor_rules import rotor_advice
 from service.client.examined import STATES, decibels, sideband_words
 from service.storage import Repository
 from service.storage.records import RotorEntry
@@ -25,9 +27,10 @@ class RotorSection:
     """What the page says of the rotor. latest: None where no record tells of it; no charts then."""
 
     latest: RotorEntry | None
-    state: RotorState
+    condition: RotorCondition
     words: str
     sentence: str
+    advice: str
     sidebands: str | None
     severity_chart: Chart | None
     sideband_chart: Chart | None
@@ -40,12 +43,13 @@ def rotor_section(repository: Repository, motor: str) -> RotorSection:
     entries = repository.latest_rotor_findings(motor, limit=MOST_RECORDS)
     telling = [one for one in entries if one.finding.severity_dB is not None]
     latest = telling[-1] if telling else (entries[-1] if entries else None)
-    state = RotorState.UNSUPPORTED if latest is None else latest.finding.state
+    condition = repository.rotor_condition(motor)
     return RotorSection(
         latest=latest,
-        state=state,
-        words=STATES[state],
-        sentence=_sentence(latest),
+        condition=condition,
+        words=STATES[condition.state],
+        sentence=_sentence(condition) if entries else "No record tells of the rotor yet.",
+        advice=rotor_advice(condition.state),
         sidebands=None if latest is None else sideband_words(latest.finding),
         severity_chart=_severity_chart(motor, telling) if telling else None,
         sideband_chart=_sideband_chart(motor, telling) if telling else None,
@@ -54,19 +58,19 @@ def rotor_section(repository: Repository, motor: str) -> RotorSection:
     )
 
 
-def _sentence(latest: RotorEntry | None) -> str:
-    if latest is None:
-        return "No record tells of the rotor yet."
-    finding = latest.finding
-    if finding.severity_dB is None:
+def _sentence(condition: RotorCondition) -> str:
+    if condition.severity_dB is None:
         return "The records cannot tell whether the cage is sound."
-    level = decibels(finding.severity_dB, finding.severity_dB_ci95)
-    return {
-        RotorState.HEALTHY: f"The cage is even: its asymmetry is {level}.",
-        RotorState.WATCH: f"The cage may be uneven: its asymmetry is {level}.",
-        RotorState.FAULT: f"The cage is uneven, as with broken bars or a broken end ring: {level}.",
-        RotorState.UNSUPPORTED: f"This record cannot tell whether the cage is sound: {level}.",
-    }[finding.state]
+    level = decibels(condition.severity_dB, condition.severity_dB_ci95)
+    says = {
+        RotorState.HEALTHY: "The cage is even: its asymmetry is",
+        RotorState.WATCH: "The cage may be uneven: its asymmetry is",
+        RotorState.FAULT: "The cage is uneven, as with broken bars or a broken end ring: its asymmetry is",
+    }[condition.state]
+    changed = ""
+    if condition.change_dB is not None:
+        changed = f", {condition.change_dB:+.1f} dB against the first records at the same load"
+    return f"{says} {level}{changed}."
 
 
 def _severity_chart(motor: str, entries: Sequence[RotorEntry]) -> Chart:

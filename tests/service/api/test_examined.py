@@ -70,3 +70,20 @@ def test_there_is_no_such_motor(client: httpx.Client, part: str) -> None:
     answer = client.get(f"/api/v1/motors/PUMP-A/{part}/trend")
     assert answer.status_code == 404
     assert "PUMP-A1" in answer.json()["detail"]
+
+
+def test_the_condition_of_a_rotor_follows_from_all_its_records(
+    client: httpx.Client, recorded: ExaminedRecordings
+) -> None:
+    found = client.get(f"{MOTOR}/rotor").json()
+    assert (found["motor"], found["state"], found["severity_dB"]) == ("PUMP-A1", "unsupported", None)
+    assert found["advice"].startswith("Have longer recordings made")
+
+    for finding in (SOUND_ROTOR, SOUND_ROTOR, SOUND_ROTOR, BROKEN_ROTOR, BROKEN_ROTOR):
+        recorded.add(finding)
+    found = client.get(f"{MOTOR}/rotor").json()
+    assert (found["state"], found["severity_dB"], found["change_dB"]) == ("fault", -29.0, 21.0)
+    assert found["since"] == rfc3339(NOW_NS + 5 * SECOND_NS)
+    assert found["bins"] == [{"bin": 6, "records": 5, "baseline_dB": -50.0}]
+    assert found["advice"].startswith("Have the cage inspected")
+    assert client.get("/api/v1/motors/PUMP-A/rotor").status_code == 404

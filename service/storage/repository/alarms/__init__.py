@@ -7,6 +7,7 @@ from service.storage.repository.alarms.figures import AlarmFigureRows
 from service.storage.repository.alarms.groups import AlarmGroupRows
 from service.storage.repository.alarms.lists import AlarmLists
 from service.storage.repository.alarms.people import AlarmPeopleRows
+from service.storage.repository.alarms.rotor import RotorAlarmRows
 from service.storage.repository.alarms.sources import AlarmSourceRows
 from service.storage.repository.alarms.suppression import AlarmSuppressionRows
 
@@ -17,6 +18,7 @@ class AlarmRows(
     AlarmPeopleRows,
     AlarmSuppressionRows,
     ConditionAlarmRows,
+    RotorAlarmRows,
     AlarmFigureRows,
     AlarmCallRows,
     AlarmSourceRows,

@@ -7,6 +7,7 @@ from sqlalchemy import delete, select
 from sqlalchemy.orm import Session
 
 from core.rotor.finding import RotorFinding
+from core.rotor.trend import DatedFinding, RotorCondition, rotor_condition
 from service.storage.models import MotorRow, RotorFindingRow
 from service.storage.records import Cursor, Page, RotorEntry
 from service.storage.repository.sessions import Order, Sessions, found, page_of
@@ -21,8 +22,17 @@ _COLUMNS: Final = [
     getattr(RotorFindingRow, name) for name in ("recording_id", "motor", "time_ns", *_FIGURES, *_ENDS)
 ]
 
+MOST_OF_EACH_END: Final = 500
+"""So many of a motor's first findings, which its baselines follow from, and of its latest ones are judged."""
+
 
 class RotorRows(Sessions):
+    def rotor_condition(self, motor: str) -> RotorCondition:
+        """Return what a motor's recordings say of its rotor together. Raises NotFoundError."""
+        with self._read() as session:
+            found(session, MotorRow, motor, "motor")
+            return rotor_condition_of(session, motor)
+
     def rotor_trend(
         self,
         motor: str,
@@ -62,6 +72,16 @@ def latest_findings(session: Session, motor: str, limit: int) -> tuple[RotorEntr
         .limit(limit)
     )
     return tuple(_entry(*row) for row in reversed(session.execute(query).all()))
+
+
+def rotor_condition_of(session: Session, motor: str) -> RotorCondition:
+    """Return what a motor's recordings say of its rotor together: the first ones, and the latest ones."""
+    of_motor = select(*_COLUMNS).where(RotorFindingRow.motor == motor).limit(MOST_OF_EACH_END)
+    first = of_motor.order_by(RotorFindingRow.time_ns, RotorFindingRow.recording_id)
+    entries = {row.recording_id: _entry(*row) for row in session.execute(first)}
+    if len(entries) == MOST_OF_EACH_END:
+        entries |= {one.recording_id: one for one in latest_findings(session, motor, MOST_OF_EACH_END)}
+    return rotor_condition([DatedFinding(one.time_ns, one.finding) for one in entries.values()])
 
 
 def keep_rotor_finding(

@@ -40,18 +40,28 @@ def test_what_no_record_tells_is_said(client: httpx.Client, recorded: ExaminedRe
 def test_a_broken_cage_is_told_in_words_with_how_sure_that_is(
     client: httpx.Client, recorded: ExaminedRecordings
 ) -> None:
-    recorded.add(SOUND_ROTOR)
-    latest = recorded.add(BROKEN_ROTOR)
+    for finding in (SOUND_ROTOR, SOUND_ROTOR, SOUND_ROTOR, BROKEN_ROTOR, BROKEN_ROTOR):
+        latest = recorded.add(finding)
     recorded.add(SHORT_RECORD)
     document = page(client.get(HERE))
     assert words(document, "#rotor .sentence") == [
-        "fault The cage is uneven, as with broken bars or a broken end ring: -29.0 dB [-31.0..-27.5]."
+        "fault The cage is uneven, as with broken bars or a broken end ring: its asymmetry is "
+        "-29.0 dB [-31.0..-27.5], +21.0 dB against the first records at the same load."
     ]
     told = " ".join(words(document, "#rotor"))
+    assert "What to do: Have the cage inspected at the next planned stop" in told
     assert "-35.5 dB below, -41.0 dB above the supply's line, at a slip of 3.10 %" in told
     assert "never how many bars are broken" in told
-    assert "1 of the latest 3 records cannot tell" in told
+    assert "1 of the latest 6 records cannot tell" in told
     assert document.cssselect(f'#rotor a[href="/recordings/{latest}"]')
+
+
+def test_one_record_alone_is_not_believed(client: httpx.Client, recorded: ExaminedRecordings) -> None:
+    recorded.add(SOUND_ROTOR)
+    recorded.add(BROKEN_ROTOR)
+    document = page(client.get(HERE))
+    assert document.cssselect("#rotor .card.watch")
+    assert "one record alone is not believed" in " ".join(words(document, "#rotor li"))
 
 
 def test_severity_is_drawn_by_load_with_what_would_be_seen(
