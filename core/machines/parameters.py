@@ -239,6 +239,26 @@ class Limits:
 
 
 @dataclass(frozen=True, slots=True)
+class StartLimits:
+    """What a motor's starts may do to it, as its data sheet says; None for what it does not say.
+
+    Parameters
+    ----------
+    locked_rotor_current_A : float or None, optional
+        Line current with the rotor locked at rated voltage, rms [A].
+    locked_rotor_hot_s, locked_rotor_cold_s : float or None, optional
+        Time for which the rotor withstands that current, from running temperature and from cold [s].
+    starts_per_hour : int or None, optional
+        Starts allowed within an hour.
+    """
+
+    locked_rotor_current_A: float | None = None
+    locked_rotor_hot_s: float | None = None
+    locked_rotor_cold_s: float | None = None
+    starts_per_hour: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Motor:
     """All that the diagnosis needs to know of one motor.
 
@@ -262,6 +282,8 @@ class Motor:
         Where the parameters come from.
     tolerances : ParameterTolerances, optional
         How far they may be off.
+    start_limits : StartLimits, optional
+        What its starts may do to it.
     """
 
     name: str
@@ -273,6 +295,7 @@ class Motor:
     transformers: Transformers = field(default_factory=Transformers)
     parameters_source: ParametersSource = ParametersSource.GIVEN
     tolerances: ParameterTolerances = field(default_factory=ParameterTolerances)
+    start_limits: StartLimits = field(default_factory=StartLimits)
 
     @property
     def is_typical(self) -> bool:

@@ -16,6 +16,10 @@ RATED_VOLTAGE_V = (10.0, 50e3)
 RATED_FREQUENCY_HZ = (10.0, 400.0)
 MOST_POLE_PAIRS = 100
 MOST_ROTOR_SLOTS = 1000
+LOCKED_ROTOR_CURRENT = (1.5, 20.0)
+"""Locked rotor's current over the rated one."""
+LOCKED_ROTOR_S = (0.5, 300.0)
+MOST_STARTS_PER_HOUR = 1000
 RATED_CURRENT_A = (0.01, 10e3)
 """Rated power over sqrt(3) times rated voltage [A]."""
 

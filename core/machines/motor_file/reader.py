@@ -3,7 +3,7 @@
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
-from math import isnan
+from math import isnan, sqrt
 from pathlib import Path
 
 from core.error_words import nearest
@@ -18,6 +18,7 @@ from core.machines.parameters import (
     Motor,
     Nameplate,
     ParametersSource,
+    StartLimits,
     Transformers,
 )
 from core.machines.sensors import SensorClass
@@ -54,6 +55,8 @@ class Plate:
         Where the parameters come from; typical of the rating where the file has none.
     intervals : dict of str to tuple of float
         95 % intervals of parameters, by name.
+    start_limits : StartLimits, optional
+        What its starts may do to the motor.
     """
 
     name: str
@@ -65,6 +68,7 @@ class Plate:
     transformers: Transformers = field(default_factory=Transformers)
     source: ParametersSource = ParametersSource.GIVEN
     intervals: dict[str, tuple[float, float]] = field(default_factory=dict)
+    start_limits: StartLimits = field(default_factory=StartLimits)
 
     @property
     def motor(self) -> Motor:
@@ -80,6 +84,7 @@ class Plate:
             self.transformers,
             self.source,
             tolerances_of(parameters, self.source, self.intervals),
+            self.start_limits,
         )
 
 
@@ -274,6 +279,7 @@ def _plate(
         ),
         source=_source(machine, has_intervals=bool(ends)),
         intervals=ends,
+        start_limits=_start_limits(limits, rated),
     )
     for section in (nameplate, machine, intervals, limits, channels, sensors, transformers):
         if section is not None:
@@ -295,6 +301,23 @@ def _nameplate(table: MotorTable) -> Nameplate:
         pole_pairs=table.count("pole_pairs", plausibility.MOST_POLE_PAIRS),
         connection=table.connection("connection"),
         rotor_slots=table.optional_count("rotor_slots", plausibility.MOST_ROTOR_SLOTS),
+    )
+
+
+def _start_limits(table: MotorTable, nameplate: Nameplate) -> StartLimits:
+    base_A = nameplate.rated_power_W / (sqrt(3.0) * nameplate.rated_voltage_V)
+    least, most = plausibility.LOCKED_ROTOR_CURRENT
+    return StartLimits(
+        locked_rotor_current_A=table.optional_number(
+            "locked_rotor_current_A", (least * base_A, most * base_A), unit="A"
+        ),
+        locked_rotor_hot_s=table.optional_number(
+            "locked_rotor_hot_s", plausibility.LOCKED_ROTOR_S, unit="s"
+        ),
+        locked_rotor_cold_s=table.optional_number(
+            "locked_rotor_cold_s", plausibility.LOCKED_ROTOR_S, unit="s"
+        ),
+        starts_per_hour=table.optional_count("starts_per_hour", plausibility.MOST_STARTS_PER_HOUR),
     )
 
 

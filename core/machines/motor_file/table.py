@@ -101,6 +101,25 @@ class MotorTable:
         except OverflowError:  # where the ends are not known
             return nan
 
+    def optional_number(self, key: str, ends: tuple[float, float], *, unit: str) -> float | None:
+        """Take a number above zero that may be missing.
+
+        Parameters
+        ----------
+        key : str
+            Key of the value.
+        ends : tuple of float
+            Least and largest value.
+        unit : str
+            Unit of the value.
+
+        Returns
+        -------
+        float or None
+            The number, None where there is none.
+        """
+        return None if self._take(key, None) is None else self.number(key, ends, unit=unit)
+
     def ratio(self, key: str) -> float | None:
         """Take a ratio of transformers.
 

@@ -103,8 +103,7 @@ def motor_text(
         lines += ["", "[intervals]  # 95 %, [low, high]"]
         lines += [f"{name} = [{_number(low)}, {_number(high)}]" for name, (low, high) in intervals.items()]
     lines += _channels(motor.channels)
-    if motor.limits != Limits():
-        lines += ["", "[limits]", f"fault_level = {_number(motor.limits.fault_level)}"]
+    lines += _limits(motor)
     if motor.sensors != SensorClass():
         lines += ["", "[sensors]"]
         lines += [f"{name} = {_number(span)}" for name, span in asdict(motor.sensors).items()]
@@ -113,6 +112,15 @@ def motor_text(
         lines += ["", "[transformers]"]
         lines += [f"{name} = {_number(ratio)}" for name, ratio in ratios.items()]
     return "\n".join(lines) + "\n"
+
+
+def _limits(motor: Motor) -> list[str]:
+    lines = []
+    if motor.limits != Limits():
+        lines.append(f"fault_level = {_number(motor.limits.fault_level)}")
+    known = {name: value for name, value in asdict(motor.start_limits).items() if value is not None}
+    lines += [f"{name} = {_number(value)}" for name, value in known.items()]
+    return ["", "[limits]", *lines] if lines else []
 
 
 def _channels(channels: ChannelNames) -> list[str]:

@@ -1,0 +1,93 @@
+"""What a start tells of the motor's parameters: commissioning of that one record."""
+
+from dataclasses import dataclass
+
+from core.commissioning.commissioning import commission
+from core.commissioning.result import Interval
+from core.machines.motor_file.reader import Plate
+from core.machines.parameters import MachineParameters, Motor
+from core.recordings import Recording
+
+LONGEST_COMPARED_S = 4.0
+"""Longest part of a start that is fitted here: the time that it takes grows with it."""
+
+
+@dataclass(frozen=True, slots=True)
+class StartParameters:
+    """Parameters by one start.
+
+    Parameters
+    ----------
+    values : dict of str to float
+        Values by the names of MachineParameters.
+    ci95 : dict of str to tuple of float
+        95 % intervals of those that the record tells; the others were held at the motor's.
+    load_level : float
+        Load torque over the rated one.
+    load_level_ci95 : tuple of float or None
+        Its 95 % interval.
+    load_law : str
+        How the load torque grows with speed.
+    residual_share : float
+        Share of the current that the model leaves unexplained.
+    warnings : tuple of str
+        Why the record may not be what it is taken for.
+    """
+
+    values: dict[str, float]
+    ci95: dict[str, Interval]
+    load_level: float
+    load_level_ci95: Interval | None
+    load_law: str
+    residual_share: float
+    warnings: tuple[str, ...]
+
+    @property
+    def machine(self) -> MachineParameters:
+        """The parameters as the models take them."""
+        return MachineParameters(**self.values)
+
+
+def start_parameters(recording: Recording, motor: Motor) -> StartParameters:
+    """Estimate the motor's parameters from one start.
+
+    Parameters
+    ----------
+    recording : Recording
+        A recording in which the motor starts from rest.
+    motor : Motor
+        The motor; the search is centred on its parameters.
+
+    Returns
+    -------
+    StartParameters
+        The parameters.
+
+    Raises
+    ------
+    RecordingError
+        If the recording lacks channels.
+    CommissioningError
+        If it is no start from rest that can be used.
+    """
+    plate = Plate(
+        motor.name,
+        motor.nameplate,
+        None if motor.is_typical else motor.parameters,
+        motor.channels,
+        motor.limits,
+        motor.sensors,
+        motor.transformers,
+        motor.parameters_source,
+    )
+    found = commission([recording], plate, span_s=(0.0, LONGEST_COMPARED_S))
+    (start,) = found.starts
+    return StartParameters(
+        values={name: one.value for name, one in found.parameters.items()},
+        ci95={name: one.ci95 for name, one in found.parameters.items() if one.ci95 is not None},
+        load_level=start.load_level.value,
+        load_level_ci95=start.load_level.ci95,
+        load_law=found.load_law,
+        residual_share=start.residual_share,
+        warnings=found.warnings,
+    )
