@@ -234,6 +234,7 @@ def _result(
         plate.sensors,
         plate.transformers,
         ParametersSource.COMMISSIONED,
+        start_limits=plate.start_limits,
     )
     return Commissioning(
         motor=motor,

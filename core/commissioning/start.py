@@ -5,9 +5,10 @@ from math import ceil, sqrt
 
 import numpy as np
 
+from core.machines.air_gap import AirGap, air_gap
 from core.machines.base import Array
 from core.machines.candidates import LoadLaw
-from core.machines.parameters import Connection, Nameplate
+from core.machines.parameters import Connection, MachineParameters, Nameplate
 from core.machines.starting import StartPlayback
 from core.machines.supply import Supply, supply
 from core.signals.decimation import decimate
@@ -118,6 +119,29 @@ class Start:
         star = self.nameplate.connection is Connection.STAR
         volts = self.nameplate.rated_voltage_V * (1.0 if star else sqrt(3.0))
         return volts / self.nameplate.rated_angular_frequency
+
+    def air_gap(self, machine: MachineParameters) -> AirGap:
+        """Return flux, torque and slip of the start from the switching on.
+
+        Parameters
+        ----------
+        machine : MachineParameters
+            Parameters of the motor.
+
+        Returns
+        -------
+        AirGap
+            Torque and slip of the whole record.
+        """
+        first = round(self.switched_on_s * self.sample_rate_hz)
+        return air_gap(
+            self.voltage_ab[:, first:],
+            self.current_ab[:, first:],
+            sample_rate_hz=self.sample_rate_hz,
+            frequency_hz=self.frequency_hz,
+            pole_pairs=self.nameplate.pole_pairs,
+            machine=machine,
+        )
 
     def playback(self, load_law: LoadLaw) -> StartPlayback:
         """Return the start's voltages, for any machine.

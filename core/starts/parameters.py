@@ -1,51 +1,13 @@
 """What a start tells of the motor's parameters: commissioning of that one record."""
 
-from dataclasses import dataclass
-
 from core.commissioning.commissioning import commission
-from core.commissioning.result import Interval
 from core.machines.motor_file.reader import Plate
-from core.machines.parameters import MachineParameters, Motor
+from core.machines.parameters import Motor
 from core.recordings import Recording
+from core.starts.examined import StartParameters
 
 LONGEST_COMPARED_S = 4.0
 """Longest part of a start that is fitted here: the time that it takes grows with it."""
-
-
-@dataclass(frozen=True, slots=True)
-class StartParameters:
-    """Parameters by one start.
-
-    Parameters
-    ----------
-    values : dict of str to float
-        Values by the names of MachineParameters.
-    ci95 : dict of str to tuple of float
-        95 % intervals of those that the record tells; the others were held at the motor's.
-    load_level : float
-        Load torque over the rated one.
-    load_level_ci95 : tuple of float or None
-        Its 95 % interval.
-    load_law : str
-        How the load torque grows with speed.
-    residual_share : float
-        Share of the current that the model leaves unexplained.
-    warnings : tuple of str
-        Why the record may not be what it is taken for.
-    """
-
-    values: dict[str, float]
-    ci95: dict[str, Interval]
-    load_level: float
-    load_level_ci95: Interval | None
-    load_law: str
-    residual_share: float
-    warnings: tuple[str, ...]
-
-    @property
-    def machine(self) -> MachineParameters:
-        """The parameters as the models take them."""
-        return MachineParameters(**self.values)
 
 
 def start_parameters(recording: Recording, motor: Motor) -> StartParameters:

@@ -30,6 +30,8 @@ class StartRecord:
     busbar: voltage transformers ahead of the contactor, live all the time; else they see nothing before.
     snr_db: of white noise on the currents, of their rms over the record; voltage_snr_db: on the voltages.
     switched_at_s: position of the start in the supply's cycle.
+    voltage: over the rated one.  unbalance: V2/V1.
+    broken_bars: broken share of the cage's bars.  resistances: of stator and rotor over the parameters'.
     """
 
     load_level: float = 0.5
@@ -44,12 +46,29 @@ class StartRecord:
     voltage_snr_db: float | None = None
     switched_at_s: float = 0.0
     seed: int = 0
+    voltage: float = 1.0
+    unbalance: float = 0.0
+    broken_bars: float = 0.0
+    resistances: tuple[float, float] = (1.0, 1.0)
 
     def of(self, motor: Motor) -> Recording:
         """The recording: IA IB IC and three phase or two line voltages."""
         plate = motor.nameplate
-        supply = Supply(plate.rated_voltage_V, plate.rated_frequency_Hz, sequence=self.sequence)
-        plant = MotorPlant(motor, supply, Load(self.load_level), Sensors(1.0, 1.0))
+        supply = Supply(
+            self.voltage * plate.rated_voltage_V,
+            plate.rated_frequency_Hz,
+            unbalance=self.unbalance,
+            sequence=self.sequence,
+        )
+        stator, rotor = self.resistances
+        turning = with_parameters(
+            motor,
+            stator_resistance_ohm=stator * motor.parameters.stator_resistance_ohm,
+            rotor_resistance_ohm=rotor * motor.parameters.rotor_resistance_ohm,
+        )
+        plant = MotorPlant(
+            turning, supply, Load(self.load_level), Sensors(1.0, 1.0), broken_bars=self.broken_bars
+        )
         true = plant.start_up(self.switched_at_s, self.duration_s, TRUE_RATE_HZ)
         behind = np.arange(true.currents_A.shape[1]) / TRUE_RATE_HZ
         t = np.arange(round((self.duration_s + self.before_s) * self.sample_rate_hz)) / self.sample_rate_hz

@@ -311,9 +311,7 @@ def _start_limits(table: MotorTable, nameplate: Nameplate) -> StartLimits:
         locked_rotor_current_A=table.optional_number(
             "locked_rotor_current_A", (least * base_A, most * base_A), unit="A"
         ),
-        locked_rotor_hot_s=table.optional_number(
-            "locked_rotor_hot_s", plausibility.LOCKED_ROTOR_S, unit="s"
-        ),
+        locked_rotor_hot_s=table.optional_number("locked_rotor_hot_s", plausibility.LOCKED_ROTOR_S, unit="s"),
         locked_rotor_cold_s=table.optional_number(
             "locked_rotor_cold_s", plausibility.LOCKED_ROTOR_S, unit="s"
         ),

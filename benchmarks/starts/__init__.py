@@ -1,0 +1,1 @@
+"""How often the cause of another start is told rightly."""
