@@ -29,8 +29,8 @@ def limits(text: str) -> StartLimits:
 
 
 def test_limits_of_starts_are_read() -> None:
-    text = "locked_rotor_current_A = 9\nlocked_rotor_hot_s = 10\nlocked_rotor_cold_s = 18\nstarts_per_hour = 6"
-    assert limits(text) == StartLimits(9.0, 10.0, 18.0, 6)
+    text = "locked_rotor_current_A = 9\nlocked_rotor_hot_s = 10\nstarts_per_hour = 6"
+    assert limits(text) == StartLimits(9.0, 10.0, None, 6)
     assert limits("fault_level = 0.01") == StartLimits()
 
 
