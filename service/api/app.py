@@ -13,16 +13,12 @@ from service.access.permissions import Permission
 from service.api import (
     baselines,
     conditions,
-    deletions,
-    diagnoses,
     event_reports,
     examined,
     measurements,
     motors,
     probes,
     problems,
-    recordings,
-    relays,
 )
 from service.api.access import sessions, tokens, users
 from service.api.access.gate import Gate
@@ -39,6 +35,9 @@ from service.api.limits.body_limits import BodyLimits, Route, document
 from service.api.limits.long_lists import LongLists
 from service.api.notifications import routes as notifications
 from service.api.query_parameters import refuse_unknown_parameters
+from service.api.recordings import deletions, diagnoses
+from service.api.recordings import routes as recordings
+from service.api.relays import routes as relays
 from service.api.reports import routes as reports
 from service.api.samples import routes as samples
 from service.configuration.access import OidcSettings

@@ -15,10 +15,10 @@ from service.api.condition_documents import condition_document
 from service.api.context import Context
 from service.api.document import Name
 from service.api.exports.answers import FILES, ListAnswer
-from service.api.listed_recordings import listed
 from service.api.operations import offer
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
+from service.api.recordings.listed import listed
 from service.api.schemas import (
     Health,
     ListedMotor,

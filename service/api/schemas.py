@@ -15,7 +15,7 @@ from core.operation import Operation
 from service.api.condition_schemas import Condition
 from service.api.document import Document, Listed, Person, Reason, RequestDocument
 from service.api.examined_schemas import RotorFinding, SupplyFigures
-from service.api.relay_schemas import RelayClock
+from service.api.relays.schemas import RelayClock
 from service.api.times import Time
 from service.plant import MeteredQuantity
 from service.storage.states import (

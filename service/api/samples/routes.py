@@ -12,10 +12,10 @@ from fastapi.responses import StreamingResponse
 
 from service.access.permissions import Permission
 from service.api.access.requirements import require
-from service.api.archive import file_stem
 from service.api.context import ApiContext, Context
 from service.api.exports.answers import sent_file
 from service.api.problems import problems
+from service.api.recordings.archive import file_stem
 from service.api.samples.opening import in_turn, of_recording
 from service.api.samples.schemas import (
     MOST_POINTS,

@@ -12,10 +12,10 @@ from starlette.responses import Response
 from core.operation import Operation
 from service.access.permissions import Permission
 from service.api.access.requirements import require
-from service.api.diagnoses import queue_diagnosis
 from service.api.pages import decode, encode
 from service.api.problems import ProblemError, WrongFieldError
-from service.api.recordings import FORM_LIMITS, store_upload
+from service.api.recordings.diagnoses import queue_diagnosis
+from service.api.recordings.routes import FORM_LIMITS, store_upload
 from service.api.samples.opening import in_turn
 from service.api.schemas import DiagnosisRequest
 from service.storage.states import RecordingState

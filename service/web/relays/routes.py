@@ -6,9 +6,9 @@ from fastapi import APIRouter, Query
 from starlette.responses import Response
 
 from service.access.permissions import Permission
-from service.api import relays
 from service.api.access.requirements import require
 from service.api.document import Name
+from service.api.relays import routes as relays
 from service.storage.states import LinkState
 from service.web.addresses import address
 from service.web.live.routes import live_address

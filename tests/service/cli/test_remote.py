@@ -18,8 +18,8 @@ from service.storage.records import RelayFindings
 from service.storage.states import LinkState
 from service.timing.backoff import Backoff
 from testing.service.plants import NOW_NS, fault, two_motor_plant
+from tests.service.api.relays.test_relays import ACQUISITION
 from tests.service.api.serving import serving
-from tests.service.api.test_relays import ACQUISITION
 from tests.service.fixtures import database_url, engine, repository
 
 __all__ = ["database_url", "engine", "repository"]

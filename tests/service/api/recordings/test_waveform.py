@@ -11,7 +11,7 @@ from core.recordings.envelope import envelope_of
 from service.api import ApiContext, create_app
 from service.api.limits.admission import Admission
 from service.api.problems import BusyError
-from service.api.waveform import Waveform, intervals_within, waveform_json
+from service.api.recordings.waveform import Waveform, intervals_within, waveform_json
 from service.storage import Repository
 from testing.service.plants import NOW_NS
 from testing.service.small_record import CFG, DAT

@@ -6,7 +6,7 @@ import pytest
 from service.api import ApiContext
 from service.storage import Repository
 from testing.service.job_runner import RUNNER
-from tests.service.api.test_recordings import FILES, upload
+from tests.service.api.recordings.test_recordings import FILES, upload
 
 
 @pytest.fixture

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from service.api.archive import file_stem
+from service.api.recordings.archive import file_stem
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from testing.service.plants import NOW_NS

@@ -13,7 +13,7 @@ from service.api.context import Context
 from service.api.document import Name
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
-from service.api.relay_schemas import (
+from service.api.relays.schemas import (
     Acquisition,
     Difference,
     Gateway,

@@ -1,0 +1,1 @@
+"""Recordings: listed, brought, sent, drawn, diagnosed again and deleted."""
