@@ -17,6 +17,7 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
         "make_month_of_records",
         "picture_of_a_condition",
         "picture_of_a_demo",
+        "read_relay_reports",
     ],
 )
 def test_an_example_without_arguments_says_how_it_is_run(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
