@@ -140,6 +140,11 @@ class Diagnosis(Document):
     rotor: RotorFinding | None = None
     supply: SupplyFigures | None = None
 
+    @property
+    def rotor_slip(self) -> float | None:
+        """The slip with which the rotor was examined."""
+        return None if self.rotor is None else self.rotor.slip
+
 
 class EventReport(Document):
     """A recording request: somebody, or the motor's schedule, asked a relay for a recording.

@@ -65,10 +65,13 @@ class CurrentSpectrum:
         return needed is not None and self.last_s - self.first_s >= needed
 
 
-def spectrum_of(shown: Opened, points: int, *, speed_rpm: float | None = None) -> CurrentSpectrum:
+def spectrum_of(
+    shown: Opened, points: int, *, speed_rpm: float | None = None, slip: float | None = None
+) -> CurrentSpectrum:
     """Return the spectrum of the currents. Raises NoSpectrumError.
 
     points: most lines of the drawn spectrum.  speed_rpm: of the shaft, as the diagnosis found it.
+    slip: as the rotor was examined with; by default it follows from the speed.
     """
     try:
         measured = shown.terminals()
@@ -81,7 +84,7 @@ def spectrum_of(shown: Opened, points: int, *, speed_rpm: float | None = None) -
     except (RecordingError, SignalError, NoPhasorsError) as error:
         raise NoSpectrumError(str(error)) from error
     highest = min(HIGHEST_ORDER * supply_hz, float(spectrum.frequency_hz[-1]))
-    slip = _slip(shown, supply_hz, speed_rpm)
+    slip = _slip(shown, supply_hz, speed_rpm) if slip is None else slip
     strongest = float(spectrum.amplitude.max()) or 1.0
     frequencies, amplitudes = _thinned(spectrum.frequency_hz, spectrum.amplitude, highest, points)
     lines = lines_of_a_motor(

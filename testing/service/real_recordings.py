@@ -75,5 +75,7 @@ def add_recording(
         now_ns=now_ns,
         runner=RUNNER,
         observation=outcome.observation,
+        rotor=outcome.rotor,
+        supply=outcome.supply,
     )
     return added.id

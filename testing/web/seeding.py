@@ -17,7 +17,9 @@ from core.diagnosis.verdict import Diagnosis
 from core.machines.parameters import Motor
 from core.operation import Operation
 from core.recordings import comtrade, read
+from core.rotor.finding import RotorFinding
 from core.starts.figures import MotorStart
+from core.supply.figures import SupplyFigures
 from core.units import NANOSECONDS_PER_DAY, NANOSECONDS_PER_SECOND
 from service.condition.motor_data import document_of
 from service.condition.worker import fold_due
@@ -33,6 +35,7 @@ from service.storage.records import Actor, RelayFindings, Role, Sample
 from service.storage.states import AlarmKind, LinkState
 from testing.service.conditions import DRIFTING, HEALTHY, tell
 from testing.service.database import make_database
+from testing.service.examined import SOUND_ROTOR, SUPPLY
 from testing.service.job_runner import RUNNER, register_runner
 from testing.service.observations import records_of_a_motor
 from testing.service.plants import fault, healthy, undiagnosable
@@ -68,11 +71,18 @@ class _Seeding:
     now_ns: int
 
     def record(
-        self, motor: str, diagnosis: Diagnosis, time_ns: int, observed: Observation | None = None
+        self,
+        motor: str,
+        diagnosis: Diagnosis,
+        time_ns: int,
+        observed: Observation | None = None,
+        *,
+        rotor: RotorFinding | None = None,
+        supply: SupplyFigures | None = None,
     ) -> str:
         """Add a recording without a waveform that can be read, and its diagnosis."""
-        content = f"{motor} {time_ns}".encode()
-        return self.add(motor, {"EVENT.CFF": content}, diagnosis, time_ns, observed)
+        files = {"EVENT.CFF": f"{motor} {time_ns}".encode()}
+        return self.add(motor, files, diagnosis, time_ns, observed, rotor=rotor, supply=supply)
 
     def add(
         self,
@@ -82,6 +92,9 @@ class _Seeding:
         time_ns: int,
         observed: Observation | None,
         start: MotorStart | None = None,
+        *,
+        rotor: RotorFinding | None = None,
+        supply: SupplyFigures | None = None,
     ) -> str:
         """Add a recording and its diagnosis; return its id."""
         added = self.repository.add_recording(self.store.store(files), motor=motor, now_ns=time_ns)
@@ -95,6 +108,8 @@ class _Seeding:
             runner=RUNNER,
             observation=observed,
             start=start,
+            rotor=rotor,
+            supply=supply,
         )
         return added.recording.id
 
@@ -112,7 +127,16 @@ class _Seeding:
         )
         assert isinstance(found, Diagnosed), found
         files = {path.name: path.read_bytes() for path in folder.glob(f"{name}.*")}
-        return self.add(motor, files, found.diagnosis, found.recorded_ns, found.observation, found.start)
+        return self.add(
+            motor,
+            files,
+            found.diagnosis,
+            found.recorded_ns,
+            found.observation,
+            found.start,
+            rotor=found.rotor,
+            supply=found.supply,
+        )
 
     def motor(self, name: str) -> Motor:
         """Return a motor as the motors file has it."""
@@ -147,7 +171,7 @@ def seed(data: Path, *, now_ns: int | None = None) -> str:
 def _seed_motors(seeding: _Seeding, data: Path) -> None:
     repository, now_ns = seeding.repository, seeding.now_ns
     for observed in _developing(now_ns):
-        seeding.record(FAULTY, fault(), observed.time_ns, observed)
+        seeding.record(FAULTY, fault(), observed.time_ns, observed, rotor=SOUND_ROTOR, supply=SUPPLY)
     seeding.fold(FAULTY)
     note = Event(now_ns - 40 * NANOSECONDS_PER_DAY, EventKind.NOTE, "bearings greased")
     repository.add_event(FAULTY, note, by=BY, now_ns=now_ns)

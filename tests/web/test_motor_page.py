@@ -109,3 +109,15 @@ def test_a_note_is_kept_while_it_is_typed_and_its_time_is_that_of_the_viewer(sit
     kept = page.page.locator("#logbook .notes li").filter(has_text="terminals cleaned")
     expect(kept.locator("time").first).to_have_attribute("title", "2026-07-01 10:30 UTC")
     expect(form.locator("[name=text]")).to_have_value("")
+
+
+def test_rotor_and_supply_are_told_and_drawn(looked_at: Site) -> None:
+    page = looked_at.open(Role.VIEWER)
+    page.goto(f"/motors/{FAULTY}")
+    expect(page.page.locator("#rotor .sentence")).to_contain_text("The cage is even")
+    expect(page.page.locator("#supply")).to_contain_text("derating 1.00")
+    for key, value in (("rotor-severity", "-68"), ("supply", "0.68")):
+        chart = page.page.locator(f'[data-chart="{key}-data"]')
+        chart.locator("[data-chart-place]").focus()
+        chart.locator("[data-chart-place]").press("End")
+        expect(chart.locator("[data-chart-readout]")).to_contain_text(value)

@@ -26,6 +26,7 @@ from service.api.samples.schemas import (
     States,
     StateTimeline,
 )
+from service.api.schemas import Diagnosis
 from service.api.times import rfc3339
 from service.storage.records import RecordingEntry
 from service.waveforms.csv_samples import csv_samples
@@ -147,12 +148,12 @@ async def get_phasors(context: Context, recording_id: UUID, at_s: Seconds = 0.0)
 @router.get("/spectrum", responses=problems(404, 409), dependencies=[require(Permission.VIEW)])
 async def get_spectrum(context: Context, recording_id: UUID, points: Points = 2000) -> Spectrum:
     """Return the spectrum of the line currents, with the lines that matter for the motor."""
-    diagnosis = context.repository.current_diagnosis(str(recording_id))
-    speed = None if diagnosis is None else diagnosis.document.get("speed_rpm")
-    speed_rpm = float(speed) if isinstance(speed, int | float) else None
+    stored = context.repository.current_diagnosis(str(recording_id))
+    diagnosis = None if stored is None else Diagnosis.model_validate(stored.document)
+    speed, slip = (None, None) if diagnosis is None else (diagnosis.speed_rpm, diagnosis.rotor_slip)
 
     def seen(entry: RecordingEntry, shown: Opened) -> Spectrum:
-        return _spectrum(entry.id, spectrum_of(shown, points, speed_rpm=speed_rpm))
+        return _spectrum(entry.id, spectrum_of(shown, points, speed_rpm=speed, slip=slip))
 
     return await of_recording(context, str(recording_id), seen)
 

@@ -23,6 +23,7 @@ from service.waveforms.states import StateTimeline, timelines
 from service.waveforms.windows import window_of
 from service.web.charts import Chart
 from service.web.pictures import markup
+from service.web.recording.beside_stator import RotorShown, SupplyShown, rotor_shown, supply_shown
 from service.web.recording.waveform_charts import (
     INTERVALS,
     SPECTRUM_POINTS,
@@ -77,6 +78,8 @@ class RecordingPage:
     entry: RecordingEntry
     stored: DiagnosisEntry | None
     diagnosis: Diagnosis | None
+    rotor: RotorShown | None
+    supply: SupplyShown | None
     files: Sequence[RecordingFile]
     earlier: str | None
     later: str | None
@@ -100,6 +103,8 @@ def recording_page(context: ApiContext, recording_id: str, at_s: float | None) -
         entry=entry,
         stored=stored,
         diagnosis=diagnosis,
+        rotor=rotor_shown(diagnosis),
+        supply=supply_shown(diagnosis),
         files=repository.recording_files(entry.id),
         earlier=earlier,
         later=later,
@@ -152,8 +157,8 @@ def _waveforms(
     states = timelines(shown)
     spectrum, spectrum_problem = None, ""
     try:
-        speed = None if diagnosis is None else diagnosis.speed_rpm
-        spectrum = spectrum_of(shown, SPECTRUM_POINTS, speed_rpm=speed)
+        speed, slip = (None, None) if diagnosis is None else (diagnosis.speed_rpm, diagnosis.rotor_slip)
+        spectrum = spectrum_of(shown, SPECTRUM_POINTS, speed_rpm=speed, slip=slip)
     except NoSpectrumError as error:
         spectrum_problem = str(error)
     middle = recording.duration_s / 2.0

@@ -55,6 +55,19 @@ def test_a_recording_says_what_it_found_and_how_sure_that_is(
     assert words(passed, "summary")[0].startswith("All ")
 
 
+def test_rotor_and_supply_are_told_beside_the_stator(
+    looking: httpx.Client, recordings: list[str], context: ApiContext
+) -> None:
+    (first, _) = context.repository.rotor_trend("PUMP-A1", limit=10).items
+    document = page(looking.get(f"/recordings/{recordings[0]}"))
+    told = " ".join(words(document, "section[aria-labelledby=rotor]"))
+    assert first.finding.reasons[0] in told
+    assert "unbalance" in " ".join(words(document, "section[aria-labelledby=supply] li"))
+    stored = context.repository.current_diagnosis(recordings[0])
+    assert stored is not None
+    assert stored.document["rotor"] == first.finding.as_dict()
+
+
 def test_waveforms_phasors_spectrum_and_states_are_there_without_a_script(
     looking: httpx.Client, recordings: list[str]
 ) -> None:

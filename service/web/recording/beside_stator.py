@@ -1,0 +1,46 @@
+"""Rotor and supply on the page of a recording, in words, from what its diagnosis kept."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from core.rotor.finding import RotorFinding, RotorState
+from core.supply.figures import SupplyFigures
+from service.api.schemas import Diagnosis
+from service.client.examined import rotor_words, sideband_words, supply_words
+
+
+@dataclass(frozen=True, slots=True)
+class RotorShown:
+    """What the page says of the rotor."""
+
+    state: RotorState
+    words: str
+    sidebands: str | None
+    finding: RotorFinding
+
+
+@dataclass(frozen=True, slots=True)
+class SupplyShown:
+    """What the page says of the supply."""
+
+    words: Sequence[str]
+    figures: SupplyFigures
+
+
+def rotor_shown(diagnosis: Diagnosis | None) -> RotorShown | None:
+    """Return what a diagnosis says of the rotor; None of one by an earlier version, and without one."""
+    if diagnosis is None or diagnosis.rotor is None:
+        return None
+    fields = diagnosis.rotor.model_dump()
+    finding = RotorFinding(**{**fields, "reasons": tuple(fields["reasons"])})
+    return RotorShown(finding.state, rotor_words(finding), sideband_words(finding), finding)
+
+
+def supply_shown(diagnosis: Diagnosis | None) -> SupplyShown | None:
+    """Return what a diagnosis says of the supply; None where its record shows nothing of it."""
+    if diagnosis is None or diagnosis.supply is None:
+        return None
+    fields = diagnosis.supply.model_dump()
+    lists = {name: tuple(value) for name, value in fields.items() if isinstance(value, list)}
+    figures = SupplyFigures(**{**fields, **lists})
+    return SupplyShown(supply_words(figures), figures)
