@@ -27,6 +27,7 @@ UNTIMED = {
     "/api/v1/recordings/{recording_id}/samples": "reads one record from the recording store",
     "/api/v1/recordings/{recording_id}/spectrum": "reads one record from the recording store",
     "/api/v1/recordings/{recording_id}/states": "reads one record from the recording store",
+    "/api/v1/motors/{name}/starts/{recording_id}": "reads one row of starts, and a few of the reference",
     "/api/v1/reports/alarms": "writes a month's alarms into a file",
     "/api/v1/reports/fleet": "writes the whole fleet into a file",
     "/api/v1/reports/motors/{name}": "writes all of a motor into a file",
@@ -79,6 +80,7 @@ TIMED: Mapping[str, tuple[str, ...]] = {
     "/api/v1/motors/{name}/rotor": _MOTOR,
     "/api/v1/motors/{name}/rotor/trend": _TREND,
     "/api/v1/motors/{name}/supply/trend": _TREND,
+    "/api/v1/motors/{name}/starts": (*_MOTOR, "{busy}?limit=1000", "{busy}?cursor={deep}"),
     "/api/v1/motors/{name}/notes": (*_MOTOR, "{busy}?limit=1000", "{busy}?cursor={deep}"),
     "/api/v1/motors/{name}/notes/{note_id}": ("{busy} {note}",),
     "/api/v1/motors/{name}/recordings": (

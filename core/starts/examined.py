@@ -93,6 +93,30 @@ class StartParameters:
 
 
 @dataclass(frozen=True, slots=True)
+class StartStress:
+    """Heating of a start against the rotor's limit.
+
+    Parameters
+    ----------
+    hot_limit_A2s, cold_limit_A2s : float or None
+        I2t that the rotor withstands from running temperature and from cold [A^2 s]; None where not known.
+    share_of_hot, share_of_cold : float or None
+        I2t of the start over these limits; of a start that was recorded in part it is the least there was.
+    source : str
+        Where the limits come from.
+    starts_per_hour : int or None
+        Starts that the motor file allows within an hour.
+    """
+
+    hot_limit_A2s: float | None
+    cold_limit_A2s: float | None
+    share_of_hot: float | None
+    share_of_cold: float | None
+    source: str
+    starts_per_hour: int | None
+
+
+@dataclass(frozen=True, slots=True)
 class ExaminedStart:
     """A start with all that it shows.
 
@@ -106,6 +130,8 @@ class ExaminedStart:
         The motor's parameters by this start; None where they cannot be estimated.
     sideband : StartSideband or None
         What the start tells of the rotor's cage.
+    stress : StartStress or None
+        Its heating against what the rotor withstands.
     remark : str or None
         Why something of this is not known, in words.
     """
@@ -114,6 +140,7 @@ class ExaminedStart:
     torque: StartTorque | None = None
     parameters: StartParameters | None = None
     sideband: StartSideband | None = None
+    stress: StartStress | None = None
     remark: str | None = None
 
     def model_as_dict(self) -> dict[str, object]:
@@ -122,11 +149,12 @@ class ExaminedStart:
         Returns
         -------
         dict of str to object
-            The parts torque, parameters, sideband and remark; None for what is not known.
+            The parts torque, parameters, sideband, stress and remark; None for what is not known.
         """
         return {
             "torque": None if self.torque is None else asdict(self.torque),
             "parameters": None if self.parameters is None else asdict(self.parameters),
             "sideband": None if self.sideband is None else self.sideband.as_dict(),
+            "stress": None if self.stress is None else asdict(self.stress),
             "remark": self.remark,
         }

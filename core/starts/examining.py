@@ -10,6 +10,7 @@ from core.rotor.starts import start_sideband
 from core.starts.examined import ExaminedStart, StartParameters
 from core.starts.measuring import measure_start
 from core.starts.parameters import start_parameters
+from core.starts.stress import start_stress
 from core.starts.torque import start_torque
 
 USUAL_RESIDUAL = 0.1
@@ -42,7 +43,7 @@ def examine_start(recording: Recording, motor: Motor) -> ExaminedStart:
         found = start_parameters(recording, motor)
     except (RecordingError, CommissioningError) as error:
         reason = f"{error.field}: expected {error.expected}, found {error.found}"
-        return ExaminedStart(figures, remark=reason)
+        return ExaminedStart(figures, stress=start_stress(figures, motor), remark=reason)
     fits = found.residual_share <= USUAL_RESIDUAL
     known = _with_parameters(motor, found) if fits else motor
     gap = start.air_gap(known.parameters)
@@ -52,6 +53,7 @@ def examine_start(recording: Recording, motor: Motor) -> ExaminedStart:
         start_torque(gap, known, figures.acceleration_s),
         found if fits else None,
         start_sideband(gap, known.parameters, run_up_s),
+        start_stress(figures, known),
         None
         if fits
         else f"the model leaves {found.residual_share:.0%} of the current unexplained: the motor file's "

@@ -7,12 +7,12 @@ is the least that NEMA MG 1-12.49 demands of motors of up to 500 hp and 1 kV: 12
 
 from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
-from dataclasses import dataclass
 from math import sqrt
 from typing import Final
 
 from core.machines.parameters import Motor
 from core.quality.circle_diagram import circle_diagram
+from core.starts.examined import StartStress
 from core.starts.figures import MotorStart
 
 NEMA_STALL_S: Final = 12.0
@@ -20,27 +20,6 @@ NEMA_STALL_S: Final = 12.0
 NEMA_MOST_POWER_W: Final = 500.0 * 745.7
 NEMA_MOST_VOLTAGE_V: Final = 1000.0
 HOUR_NS: Final = 3_600_000_000_000
-
-
-@dataclass(frozen=True, slots=True)
-class StartStress:
-    """Heating of a start against the rotor's limit.
-
-    Parameters
-    ----------
-    hot_limit_A2s, cold_limit_A2s : float or None
-        I2t that the rotor withstands from running temperature and from cold [A^2 s]; None where not known.
-    share_of_hot, share_of_cold : float or None
-        I2t of the start over these limits; of a start that was recorded in part it is the least there was.
-    source : str
-        Where the limits come from.
-    """
-
-    hot_limit_A2s: float | None
-    cold_limit_A2s: float | None
-    share_of_hot: float | None
-    share_of_cold: float | None
-    source: str
 
 
 def start_stress(start: MotorStart, motor: Motor) -> StartStress:
@@ -70,6 +49,7 @@ def start_stress(start: MotorStart, motor: Motor) -> StartStress:
                 None,
                 "not known: the motor file has no locked_rotor_hot_s, and NEMA MG 1-12.49 says nothing of "
                 "motors above 500 hp or 1 kV",
+                limits.starts_per_hour,
             )
         hot_s, source = NEMA_STALL_S, "NEMA MG 1-12.49: at least 12 s hot"
     current_A = limits.locked_rotor_current_A
@@ -83,6 +63,7 @@ def start_stress(start: MotorStart, motor: Motor) -> StartStress:
         None if hot is None else start.i2t_A2s / hot,
         None if cold is None else start.i2t_A2s / cold,
         source,
+        limits.starts_per_hour,
     )
 
 

@@ -19,6 +19,7 @@ from service.api import (
     motors,
     probes,
     problems,
+    starts,
 )
 from service.api.access import sessions, tokens, users
 from service.api.access.gate import Gate
@@ -71,6 +72,7 @@ def create_app(
         conditions,
         examined,
         baselines,
+        starts,
         measurements,
         relays,
         alarm_lists,

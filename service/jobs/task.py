@@ -8,7 +8,7 @@ from core.condition.observation import Observation
 from core.diagnosis.verdict import Diagnosis
 from core.machines.parameters import Motor
 from core.rotor.finding import RotorFinding
-from core.starts.figures import MotorStart
+from core.starts.examined import ExaminedStart
 from core.supply.figures import SupplyFigures
 
 
@@ -47,7 +47,7 @@ class Diagnosed:
     observation: Observation | None = None
     operation_remark: str | None = None
     has_time_code: bool = False
-    start: MotorStart | None = None
+    start: ExaminedStart | None = None
     rotor: RotorFinding | None = None
     supply: SupplyFigures | None = None
 

@@ -18,7 +18,7 @@ from service.jobs.task import Diagnosed, DiagnosisTask, Outcome, Rejected
 from service.jobs.worker_process import follow_service
 
 if TYPE_CHECKING:
-    from core.starts.figures import MotorStart
+    from core.starts.examined import ExaminedStart
 
 
 def prepare_worker() -> None:
@@ -73,11 +73,11 @@ def _why_not_commissioned_from(recording: Recording, motor: Motor) -> str | None
     return None
 
 
-def _measured(recording: Recording, motor: Motor) -> "MotorStart | None":
+def _measured(recording: Recording, motor: Motor) -> "ExaminedStart | None":
     """Return what a start shows; None where nothing can be measured."""
-    from core.starts.measuring import measure_start
+    from core.starts.examining import examine_start
 
     try:
-        return measure_start(recording, motor)
+        return examine_start(recording, motor)
     except RecordingError:
         return None

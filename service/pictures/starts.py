@@ -9,7 +9,7 @@ from service.pictures.looks import PRINT, Look
 from service.pictures.svg import Drawing
 
 WIDTH, HEIGHT = 640.0, 300.0
-VOLTAGE_HEIGHT = 190.0
+LOWER_HEIGHT = 190.0
 MOST_POINTS = 400
 LEAST_SPAN_S = 0.2
 AFTER = 1.3
@@ -46,9 +46,9 @@ def starts_picture(
     """Return the picture as SVG.
 
     starts: oldest first; the latest is drawn over the others.  reference: what they are compared with.
-    name: of the quantity, whose axis begins at 0 for currents, and below the least figure for others.
+    name: of the quantity, whose axis begins below the least figure for voltages, else at 0 or below.
     """
-    height = HEIGHT if name == "current" else VOLTAGE_HEIGHT
+    height = HEIGHT if name == "current" else LOWER_HEIGHT
     known = [one for one in starts if one.values and all(map(isfinite, one.values))]
     drawing = Drawing(
         WIDTH, height, title=f"{title}: {name} of recorded starts", description=_told(known, reference, unit)
@@ -60,7 +60,8 @@ def starts_picture(
     span_s = _span(every)
     shown = [value for one in every for time_s, value in one.points if time_s <= span_s]
     most = max(shown, default=0.0)
-    least = 0.0 if name == "current" else 0.95 * min(shown, default=0.0)
+    lowest = min(shown, default=0.0)
+    least = 0.95 * lowest if name == "voltage" else min(0.0, lowest)
     axes = Axes(
         WIDTH,
         height,

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 from core.operation import Operation
+from core.starts.examined import ExaminedStart
 from core.starts.figures import MotorStart, StartCurve
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
@@ -30,7 +31,9 @@ class RecordedStarts:
     def __init__(self, repository: Repository, store: RecordingStore) -> None:
         self.repository, self._store, self._number = repository, store, 0
 
-    def add(self, start: MotorStart | None, motor: str = "PUMP-A1", *, at_ns: int | None = None) -> str:
+    def add(
+        self, start: MotorStart | ExaminedStart | None, motor: str = "PUMP-A1", *, at_ns: int | None = None
+    ) -> str:
         """Add the recording of a start with what it shows; return its id."""
         self._number += 1
         now_ns = NOW_NS + self._number * SECOND_NS if at_ns is None else at_ns
@@ -39,7 +42,7 @@ class RecordedStarts:
         self.diagnose(start, now_ns)
         return added.recording.id
 
-    def diagnose(self, start: MotorStart | None, recorded_ns: int) -> None:
+    def diagnose(self, start: MotorStart | ExaminedStart | None, recorded_ns: int) -> None:
         """Have the next recording that waits diagnosed."""
         claimed = self.repository.claim_job(now_ns=recorded_ns + 1000 * SECOND_NS, runner=RUNNER)
         assert claimed is not None
@@ -50,5 +53,5 @@ class RecordedStarts:
             recorded_ns=recorded_ns,
             now_ns=recorded_ns,
             runner=RUNNER,
-            start=start,
+            start=ExaminedStart(start) if isinstance(start, MotorStart) else start,
         )

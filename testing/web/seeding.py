@@ -18,7 +18,7 @@ from core.machines.parameters import Motor
 from core.operation import Operation
 from core.recordings import comtrade, read
 from core.rotor.finding import RotorFinding
-from core.starts.figures import MotorStart
+from core.starts.examined import ExaminedStart
 from core.supply.figures import SupplyFigures
 from core.units import NANOSECONDS_PER_DAY, NANOSECONDS_PER_SECOND
 from service.condition.motor_data import document_of
@@ -91,7 +91,7 @@ class _Seeding:
         diagnosis: Diagnosis,
         time_ns: int,
         observed: Observation | None,
-        start: MotorStart | None = None,
+        start: ExaminedStart | None = None,
         *,
         rotor: RotorFinding | None = None,
         supply: SupplyFigures | None = None,

@@ -57,6 +57,21 @@ def trend(
     show_trend(url, motor, quantity, first=from_, end=to, limit=limit, as_csv=as_csv, as_json=as_json)
 
 
+@commands.command()
+def starts(
+    motor: MotorName,
+    url: Url = DEFAULT_URL,
+    limit: Limit = 20,
+    *,
+    as_csv: Csv = False,
+    as_json: Json = False,
+) -> None:
+    """Show the recorded starts of a motor, oldest first, and why they are other than the first ones."""
+    from service.cli.recordings.starts import show_starts
+
+    show_starts(url, motor, limit=limit, as_csv=as_csv, as_json=as_json)
+
+
 recordings = typer.Typer(cls=DefaultGroup, help="List recordings that the service has, or download one.")
 commands.add_typer(recordings, name="recordings")
 

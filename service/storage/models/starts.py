@@ -11,6 +11,8 @@ from service.storage.models.base import Base
 class StartRow(Base):
     """What a recorded start shows (core.starts). curve: current and voltage over time.
 
+    model: torque, parameters, sideband and stress; null for what an earlier version measured.
+
     It outlives a recording that a rule of retention deletes, because later starts are compared with it.
     """
 
@@ -30,6 +32,7 @@ class StartRow(Base):
     rated_current_A: Mapped[float] = mapped_column(Double)
     rated_voltage_V: Mapped[float] = mapped_column(Double)
     curve: Mapped[Mapping[str, object]]
+    model: Mapped[Mapping[str, object] | None]
 
     __table_args__ = (
         Index("ix_starts_motor_time_ns_recording_id", "motor", "time_ns", "recording_id"),

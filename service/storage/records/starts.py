@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from core.starts.examined import ExaminedStart
 from core.starts.figures import MotorStart
 
 
@@ -12,4 +13,9 @@ class StartEntry:
     recording_id: str
     motor: str
     time_ns: int
-    start: MotorStart
+    examined: ExaminedStart
+
+    @property
+    def start(self) -> MotorStart:
+        """The figures."""
+        return self.examined.figures

@@ -12,7 +12,7 @@ from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
 from core.diagnosis.verdict import Diagnosis, Verdict, not_finite
 from core.operation import AT_REST, EXPECTED
 from core.rotor.finding import RotorFinding
-from core.starts.figures import MotorStart
+from core.starts.examined import ExaminedStart
 from core.supply.figures import SupplyFigures
 from core.units import NANOSECONDS_PER_SECOND
 from service.audit.actions import AuditAction
@@ -151,7 +151,7 @@ class JobRows(Sessions):
         observation: Observation | None = None,
         left_out: str | None = None,
         operation_remark: str | None = None,
-        start: MotorStart | None = None,
+        start: ExaminedStart | None = None,
         rotor: RotorFinding | None = None,
         supply: SupplyFigures | None = None,
     ) -> bool:

@@ -1,12 +1,13 @@
 """What the pages of starts show, read from the repository."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 from markupsafe import Markup
 
-from core.condition.events import EventKind
+from core.starts.compared import StartChanges
+from service.api.compared_starts import LATEST, reference_of, within_hour
 from service.api.pages import decode, encode
 from service.pictures.looks import PAGE, Look
 from service.pictures.starts import StartLine, starts_picture
@@ -18,9 +19,6 @@ from service.web.pictures import markup
 OVERLAID: Final = 10
 """The latest starts that are drawn over one another."""
 MOST_LISTED: Final = 50
-MOST_EVENTS: Final = 1000
-RENEWING: Final = (EventKind.REWOUND, EventKind.REFERENCE_RESTARTED, EventKind.RECORDER_CHANGED)
-"""After these a start is compared with the first one that comes then."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,13 +26,23 @@ class ComparedStart:
     """A start beside the reference of its motor.
 
     longer: acceleration time over that of the reference, less 1.  hotter: the same of the I2t; both None
-    where that cannot be told.
+    where that cannot be told.  changes: why it is other than the first starts; None for those.  within_hour:
+    starts in the hour that ends with it.
     """
 
     entry: StartEntry
     longer: float | None = None
     hotter: float | None = None
     is_reference: bool = False
+    changes: StartChanges | None = None
+    within_hour: int = 1
+
+    @property
+    def too_often(self) -> bool:
+        """Whether there were more starts within an hour than the motor file allows."""
+        stress = self.entry.examined.stress
+        allowed = None if stress is None else stress.starts_per_hour
+        return allowed is not None and self.within_hour > allowed
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +50,8 @@ class StartsOfMotor:
     """The starts of a motor. current, voltage: pictures as SVG; voltage is None where no start has any.
 
     renewed: what made the reference begin anew; None where nothing did.  unmeasured: recordings of starts
-    that an earlier version has diagnosed.
+    that an earlier version has diagnosed.  changes: why the latest starts, taken together, are other than the
+    first ones; None where there are no others.
     """
 
     starts: Sequence[ComparedStart]
@@ -51,6 +60,8 @@ class StartsOfMotor:
     renewed: ConditionEvent | None
     current: Markup
     voltage: Markup | None
+    torque: Markup | None
+    changes: StartChanges | None
     drawn: int
     unmeasured: int
 
@@ -69,8 +80,9 @@ def starts_of_motor(
 ) -> StartsOfMotor:
     """Read what the page of a motor's starts shows. Raises NotFoundError, ProblemError."""
     page = repository.starts(motor, limit=MOST_LISTED, after=decode(cursor, int, str))
-    renewed = _renewed(repository, motor)
-    reference = repository.first_whole_start(motor, from_ns=0 if renewed is None else renewed.time_ns)
+    first_ones = reference_of(repository, motor)
+    reference = first_ones.starts[0] if first_ones.starts else None
+    counts = within_hour(repository, page.items)
     latest = page.items if cursor is None else repository.starts(motor, limit=OVERLAID).items
     drawn = [one for one in latest[:OVERLAID] if one.start.is_from_rest and one != reference]
     drawn.reverse()
@@ -79,14 +91,23 @@ def starts_of_motor(
     first = None if reference is None else current_line(reference)
     first_volts = None if reference is None else voltage_line(reference)
     return StartsOfMotor(
-        starts=[compared(one, reference) for one in page.items],
+        starts=[
+            replace(
+                compared(one, reference),
+                changes=first_ones.compared([one]),
+                within_hour=counts[one.recording_id],
+            )
+            for one in page.items
+        ],
         next_path=None
         if page.next is None
         else address("/motors", motor, "starts", cursor=encode(page.next)),
         reference=reference,
-        renewed=renewed,
+        renewed=first_ones.renewed,
         current=markup(starts_picture(motor, lines, reference=first, look=look)),
         voltage=_voltage(motor, volts, first_volts, look),
+        torque=_torque(motor, drawn, reference, look),
+        changes=first_ones.compared(latest[:LATEST]),
         drawn=len(drawn),
         unmeasured=repository.unmeasured_starts(motor),
     )
@@ -98,6 +119,16 @@ def _voltage(
     if not lines and reference is None:
         return None
     return markup(starts_picture(motor, lines, reference=reference, unit="V", name="voltage", look=look))
+
+
+def _torque(
+    motor: str, drawn: Sequence[StartEntry], reference: StartEntry | None, look: Look
+) -> Markup | None:
+    lines = [line for line in map(torque_line, drawn) if line is not None]
+    first = None if reference is None else torque_line(reference)
+    if not lines and first is None:
+        return None
+    return markup(starts_picture(motor, lines, reference=first, unit="N m", name="torque", look=look))
 
 
 def all_starts(repository: Repository, cursor: str | None) -> AllStarts:
@@ -134,11 +165,13 @@ def voltage_line(entry: StartEntry) -> StartLine | None:
     return StartLine(start.curve.first_s, start.curve.step_s, start.curve.voltage_V, start.acceleration_s)
 
 
+def torque_line(entry: StartEntry) -> StartLine | None:
+    """Return the torque of a start as it is drawn; None where it is not known."""
+    torque = entry.examined.torque
+    if torque is None:
+        return None
+    return StartLine(torque.first_s, torque.step_s, torque.torque_Nm, entry.start.acceleration_s)
+
+
 def _more(value: float | None, first: float | None) -> float | None:
     return None if value is None or not first else value / first - 1.0
-
-
-def _renewed(repository: Repository, motor: str) -> ConditionEvent | None:
-    """Return the latest event after which starts have another reference; None without one."""
-    events = repository.events(motor, limit=MOST_EVENTS).items
-    return next((one for one in events if one.kind in RENEWING and one.withdrawn_ns is None), None)

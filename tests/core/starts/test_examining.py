@@ -24,7 +24,7 @@ def test_parameters_of_a_start_are_those_of_the_motor(motor: Motor) -> None:
     assert high - low < 0.05 * true
     assert found.torque is not None
     document = json.loads(json.dumps(found.model_as_dict(), allow_nan=False))
-    assert set(document) == {"torque", "parameters", "sideband", "remark"}
+    assert set(document) == {"torque", "parameters", "sideband", "stress", "remark"}
 
 
 def test_a_start_that_began_before_the_record_has_figures_and_a_remark() -> None:

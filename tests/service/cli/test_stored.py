@@ -5,6 +5,7 @@ import io
 import json
 import zipfile
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import httpx
@@ -19,6 +20,7 @@ from testing.service.conditions import FAULT, tell
 from testing.service.job_runner import RUNNER
 from testing.service.plants import NOW_NS, SECOND_NS, fault, healthy
 from testing.service.small_record import CFG, DAT
+from testing.service.starts import START, RecordedStarts
 from tests.service.api.serving import serving
 from tests.service.fixtures import database_url, engine, repository, store
 
@@ -65,6 +67,21 @@ def mcc(client: httpx.Client, capsys: pytest.CaptureFixture[str]) -> Mcc:
 
 def rows(text: str) -> list[dict[str, str]]:
     return list(csv.DictReader(io.StringIO(text)))
+
+
+def test_starts(mcc: Mcc, repository: Repository, store: RecordingStore) -> None:
+    starts = RecordedStarts(repository, store)
+    for _ in range(5):
+        starts.add(START)
+    starts.add(replace(START, acceleration_s=2.0))
+
+    table = mcc("starts", "PUMP-A1")
+    assert table.count("reference") == 5
+    assert "not told apart" in " ".join(table.split())
+    found = json.loads(mcc("starts", "PUMP-A1", "--json", "--limit", "1"))["starts"]
+    assert [one["acceleration_s"] for one in found] == [2.0]
+    assert [one["is_reference"] for one in rows(mcc("starts", "PUMP-A1", "--csv"))][:1] == ["True"]
+    assert mcc("starts", "FAN-A2") == "no starts\n"
 
 
 def test_a_trend(mcc: Mcc, recorded: list[str]) -> None:

@@ -35,6 +35,7 @@ WITH_SERVICE = [
     ("notes", LONG),
     ("relay", f"{LONG}_SEL710"),
     ("trend", LONG),
+    ("starts", LONG),
     ("alarms",),
     ("recordings",),
 ]

@@ -65,8 +65,10 @@ def test_a_start_is_measured(tmp_path: Path) -> None:
     assert isinstance(outcome, Diagnosed)
     assert outcome.start is not None
     measured = measure_start(start, REFERENCE)
-    assert outcome.start.acceleration_s == pytest.approx(measured.acceleration_s, rel=0.01)
-    assert outcome.start.i2t_A2s == pytest.approx(measured.i2t_A2s, rel=0.01)
+    assert outcome.start.figures.acceleration_s == pytest.approx(measured.acceleration_s, rel=0.01)
+    assert outcome.start.figures.i2t_A2s == pytest.approx(measured.i2t_A2s, rel=0.01)
+    assert outcome.start.torque is not None
+    assert outcome.start.parameters is not None
 
 
 def test_a_record_that_is_no_start_has_nothing_measured_of_one(tmp_path: Path) -> None:

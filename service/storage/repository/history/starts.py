@@ -1,6 +1,7 @@
 """Recorded starts: kept with the diagnosis of their recording, and listed."""
 
-from collections.abc import Mapping
+import json
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from math import isfinite
 from typing import Any
@@ -9,10 +10,14 @@ from sqlalchemy import delete, exists, func, select
 from sqlalchemy.orm import Session
 
 from core.operation import Operation
+from core.starts.changes import REFERENCE_STARTS
+from core.starts.examined import ExaminedStart
 from core.starts.figures import MotorStart, StartCurve
+from service.storage.errors import NotFoundError
 from service.storage.models import MotorRow, RecordingRow, StartRow
 from service.storage.records import Cursor, Page, StartEntry
-from service.storage.repository.sessions import Order, Sessions, found, only, page_of
+from service.storage.repository.history.start_documents import examined_start
+from service.storage.repository.sessions import Order, Sessions, found, page_of
 
 _FIGURES = (
     "is_from_rest",
@@ -43,17 +48,36 @@ class StartRows(Sessions):
                 found(session, MotorRow, motor, "motor")
             return page_of(session, query, order, _entry, limit=limit, after=after, descending=True)
 
-    def first_whole_start(self, motor: str, *, from_ns: int) -> StartEntry | None:
-        """Return the first start of a motor from a time on that was recorded from rest to speed."""
+    def start(self, motor: str, recording_id: str) -> StartEntry:
+        """Return what one recording shows of a start of a motor. Raises NotFoundError."""
+        with self._read() as session:
+            found(session, MotorRow, motor, "motor")
+            row = session.get(StartRow, recording_id)
+            if row is None or row.motor != motor:
+                raise NotFoundError("start", recording_id)
+            return _entry(row)
+
+    def times_of_starts(self, motor: str, *, from_ns: int, to_ns: int) -> Sequence[int]:
+        """Return when a motor was started between two times, both included, in their order."""
+        query = (
+            select(StartRow.time_ns)
+            .where(StartRow.motor == motor, StartRow.time_ns >= from_ns, StartRow.time_ns <= to_ns)
+            .order_by(StartRow.time_ns)
+        )
+        with self._read() as session:
+            return session.scalars(query).all()
+
+    def first_whole_starts(self, motor: str, *, from_ns: int) -> Sequence[StartEntry]:
+        """Return the first few starts of a motor from a time on that were recorded from rest to speed."""
         query = (
             select(StartRow)
             .where(StartRow.motor == motor, StartRow.time_ns >= from_ns)
             .where(StartRow.is_from_rest, StartRow.acceleration_s.is_not(None))
             .order_by(StartRow.time_ns, StartRow.recording_id)
+            .limit(REFERENCE_STARTS)
         )
         with self._read() as session:
-            row = only(session, query)
-            return None if row is None else _entry(row)
+            return [_entry(row) for row in session.scalars(query)]
 
     def unmeasured_starts(self, motor: str | None = None) -> int:
         """Return how many stored recordings of starts have no figures: those of earlier versions."""
@@ -68,16 +92,22 @@ class StartRows(Sessions):
 
 
 def keep_start(
-    session: Session, recording_id: str, motor: str, time_ns: int, start: MotorStart | None
+    session: Session, recording_id: str, motor: str, time_ns: int, start: ExaminedStart | None
 ) -> None:
     """Keep what a recording shows of a start, in place of what an earlier diagnosis found; None for none."""
     forget_start(session, recording_id)
-    if start is None or not _is_finite(start):
+    if start is None or not _is_finite(start.figures):
         return
-    figures = {name: getattr(start, name) for name in _FIGURES}
+    figures = {name: getattr(start.figures, name) for name in _FIGURES}
+    model = start.model_as_dict()
     session.add(
         StartRow(
-            recording_id=recording_id, motor=motor, time_ns=time_ns, curve=asdict(start.curve), **figures
+            recording_id=recording_id,
+            motor=motor,
+            time_ns=time_ns,
+            curve=asdict(start.figures.curve),
+            model=model if _is_storable(model) else None,
+            **figures,
         )
     )
 
@@ -85,6 +115,15 @@ def keep_start(
 def forget_start(session: Session, recording_id: str) -> None:
     """Delete what a recording showed of a start."""
     session.execute(delete(StartRow).where(StartRow.recording_id == recording_id))
+
+
+def _is_storable(model: Mapping[str, object]) -> bool:
+    """Return whether a document has nothing but numbers in it that JSON has, too."""
+    try:
+        json.dumps(model, allow_nan=False)
+    except ValueError:
+        return False
+    return True
 
 
 def _is_finite(start: MotorStart) -> bool:
@@ -97,9 +136,8 @@ def _is_finite(start: MotorStart) -> bool:
 
 def _entry(row: StartRow, *_: object) -> StartEntry:
     figures: dict[str, Any] = {name: getattr(row, name) for name in _FIGURES}
-    return StartEntry(
-        row.recording_id, row.motor, row.time_ns, MotorStart(**figures, curve=_curve(row.curve))
-    )
+    start = MotorStart(**figures, curve=_curve(row.curve))
+    return StartEntry(row.recording_id, row.motor, row.time_ns, examined_start(start, row.model))
 
 
 def _curve(document: Mapping[str, Any]) -> StartCurve:

@@ -4,10 +4,14 @@ from dataclasses import replace
 
 import pytest
 
+from core.machines.parameters import Motor
+from core.starts.examining import examine_start
 from service.recording_store.store import RecordingStore
 from service.storage import NotFoundError, Repository
 from service.storage.records import Actor
 from service.storage.states import DeletedBy
+from testing.machines.motors import LARGE, MEDIUM
+from testing.machines.starts import StartRecord
 from testing.service.plants import NOW_NS, SECOND_NS
 from testing.service.starts import START, RecordedStarts
 
@@ -53,16 +57,34 @@ def test_another_diagnosis_replaces_what_was_measured(recorded: RecordedStarts) 
     assert entry.start == slower
 
 
-def test_the_reference_is_the_first_whole_start_from_a_time_on(recorded: RecordedStarts) -> None:
+def test_the_reference_is_the_first_whole_starts_from_a_time_on(recorded: RecordedStarts) -> None:
     recorded.add(replace(START, is_from_rest=False, acceleration_s=None))
     recorded.add(replace(START, acceleration_s=None))
     third, fourth = recorded.add(START), recorded.add(START)
 
-    def first_from(second: int) -> str | None:
-        entry = recorded.repository.first_whole_start("PUMP-A1", from_ns=NOW_NS + second * SECOND_NS)
-        return None if entry is None else entry.recording_id
+    def first_from(second: int) -> list[str]:
+        entries = recorded.repository.first_whole_starts("PUMP-A1", from_ns=NOW_NS + second * SECOND_NS)
+        return [entry.recording_id for entry in entries]
 
-    assert [first_from(second) for second in (0, 3, 4, 5)] == [third, third, fourth, None]
+    both = [third, fourth]
+    assert [first_from(second) for second in (0, 3, 4, 5)] == [both, both, [fourth], []]
+
+
+@pytest.mark.parametrize("motor", [MEDIUM, LARGE], ids=lambda motor: motor.name)
+def test_what_the_model_tells_is_kept_as_it_was(recorded: RecordedStarts, motor: Motor) -> None:
+    examined = examine_start(StartRecord(snr_db=45.0).of(motor), motor)
+    recording_id = recorded.add(examined)
+
+    assert recorded.repository.start("PUMP-A1", recording_id).examined == examined
+    with pytest.raises(NotFoundError, match="start"):
+        recorded.repository.start("FAN-A2", recording_id)
+
+
+def test_starts_between_two_times_are_counted(recorded: RecordedStarts) -> None:
+    for _ in range(3):
+        recorded.add(START)
+    times = recorded.repository.times_of_starts("PUMP-A1", from_ns=NOW_NS, to_ns=NOW_NS + 2 * SECOND_NS)
+    assert times == [NOW_NS + SECOND_NS, NOW_NS + 2 * SECOND_NS]
 
 
 def test_starts_of_earlier_versions_are_counted(recorded: RecordedStarts) -> None:
