@@ -1,4 +1,7 @@
-"""The table of trends: of each recording what it says by itself, and what is said of the motor from it on."""
+"""The table of trends: of each recording what it says by itself, and what is said of the motor from it on.
+
+What it says by itself is of the winding, the rotor and the supply.
+"""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -7,21 +10,30 @@ from heapq import merge
 from itertools import chain, groupby
 from operator import attrgetter
 
+from core.rotor.finding import RotorFinding
+from core.supply.figures import SupplyFigures
 from service.exports.paging import PAGE, pages
 from service.exports.tables import Column, ColumnType, Table, text, time
-from service.storage.records import ConditionPoint, DiagnosisPoint
+from service.storage.records import ConditionPoint, DiagnosisPoint, RotorEntry, SupplyEntry
 from service.storage.repository import Repository
+
+_Point = DiagnosisPoint | ConditionPoint | RotorEntry | SupplyEntry
 
 
 @dataclass(slots=True)
 class TrendRow:
-    """A recording. diagnosed: None where a rule of retention deleted it.  said: None until it is folded."""
+    """A recording. diagnosed: None where a rule of retention deleted it.  said: None until it is folded.
+
+    rotor, supply: None where the recording shows nothing of them.
+    """
 
     motor: str
     time_ns: int
     recording_id: str
     diagnosed: DiagnosisPoint | None = None
     said: ConditionPoint | None = None
+    rotor: RotorFinding | None = None
+    supply: SupplyFigures | None = None
 
 
 def _diagnosed(
@@ -36,6 +48,23 @@ def _said(
 ) -> Column[TrendRow]:
     """Return a column of what is said of the motor from the recording on; of: name of the figure there."""
     return Column(name, column_type, unit, meaning, lambda row: getattr(row.said, of, None))
+
+
+def _of_rotor(
+    name: str, meaning: str, of: str, *, column_type: ColumnType = ColumnType.NUMBER, unit: str = "dB"
+) -> Column[TrendRow]:
+    """Return a column of what the recording shows of the rotor; of: name of the figure there."""
+    return Column(name, column_type, unit, meaning, lambda row: getattr(row.rotor, of, None))
+
+
+def _of_supply(name: str, meaning: str, *, unit: str = "1") -> Column[TrendRow]:
+    """Return a column of what the recording shows of the supply."""
+    return Column(name, ColumnType.NUMBER, unit, meaning, lambda row: getattr(row.supply, name, None))
+
+
+def _severity_end(row: TrendRow, end: int) -> float | None:
+    interval = None if row.rotor is None else row.rotor.severity_dB_ci95
+    return None if interval is None else interval[end]
 
 
 _LOW = "lower bound of its 95 % interval"
@@ -72,6 +101,27 @@ TABLE: Table[TrendRow] = Table(
         _said("change", "change of the fault level since the reference", "change"),
         _said("change_ci95_low", _LOW, "change_ci95_low"),
         _said("change_ci95_high", _HIGH, "change_ci95_high"),
+        _of_rotor(
+            "rotor_state",
+            "what the recording shows of the rotor",
+            "state",
+            column_type=ColumnType.TEXT,
+            unit="",
+        ),
+        _of_rotor("rotor_severity_dB", "asymmetry of the rotor's cage", "severity_dB"),
+        Column(
+            "rotor_severity_dB_ci95_low", ColumnType.NUMBER, "dB", _LOW, lambda row: _severity_end(row, 0)
+        ),
+        Column(
+            "rotor_severity_dB_ci95_high", ColumnType.NUMBER, "dB", _HIGH, lambda row: _severity_end(row, 1)
+        ),
+        _of_rotor("rotor_detection_limit_dB", "severity that the recording would show", "detection_limit_dB"),
+        _of_rotor("slip", "slip, from the fit", "slip", unit="1"),
+        _of_supply("frequency_hz", "frequency of the supply", unit="Hz"),
+        _of_supply("voltage_deviation", "mean line voltage over the rated one, minus 1"),
+        _of_supply("voltage_unbalance_iec", "unbalance of the voltages, |V2| / |V1|"),
+        _of_supply("voltage_unbalance_nema", "unbalance of the line voltages by NEMA MG-1"),
+        _of_supply("thd_voltage", "total harmonic distortion of the voltage"),
         text("recording_id", "id of the recording", attrgetter("recording_id")),
     ),
 )
@@ -84,23 +134,34 @@ def trends(
     for motor in motors:
         diagnosed = pages(partial(repository.diagnosis_trend, motor, from_ns=from_ns, to_ns=to_ns))
         said = pages(partial(repository.condition_trend, motor, from_ns=from_ns, to_ns=to_ns))
-        yield from _joined(motor, chain.from_iterable(diagnosed), chain.from_iterable(said))
+        rotor = pages(partial(repository.rotor_trend, motor, from_ns=from_ns, to_ns=to_ns))
+        supply = pages(partial(repository.supply_trend, motor, from_ns=from_ns, to_ns=to_ns))
+        sources: list[Iterator[_Point]] = [
+            chain.from_iterable(diagnosed),
+            chain.from_iterable(said),
+            chain.from_iterable(rotor),
+            chain.from_iterable(supply),
+        ]
+        points = merge(*sources, key=attrgetter("time_ns"))
+        yield from _joined(motor, points)
 
 
-def _joined(
-    motor: str, diagnosed: Iterator[DiagnosisPoint], said: Iterator[ConditionPoint]
-) -> Iterator[Sequence[TrendRow]]:
-    """Return a row for each recording that is in one of both; both are in the order of time."""
+def _joined(motor: str, points: Iterator[_Point]) -> Iterator[Sequence[TrendRow]]:
+    """Return a row for each recording of which there is a point; they are in the order of time."""
     batch: list[TrendRow] = []
-    points: Iterator[DiagnosisPoint | ConditionPoint] = merge(diagnosed, said, key=attrgetter("time_ns"))
     for time_ns, together in groupby(points, key=attrgetter("time_ns")):
         rows: dict[str, TrendRow] = {}
         for point in together:
             row = rows.setdefault(point.recording_id, TrendRow(motor, time_ns, point.recording_id))
-            if isinstance(point, DiagnosisPoint):
-                row.diagnosed = point
-            else:
-                row.said = point
+            match point:
+                case DiagnosisPoint():
+                    row.diagnosed = point
+                case ConditionPoint():
+                    row.said = point
+                case RotorEntry():
+                    row.rotor = point.finding
+                case SupplyEntry():
+                    row.supply = point.figures
         batch += rows.values()
         if len(batch) >= PAGE:
             yield batch

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from service.jobs import Diagnosed, DiagnosisTask, Outcome, Rejected
 from service.jobs.worker_process import follow_service
+from testing.service.examined import BROKEN_ROTOR, SUPPLY
 from testing.service.plants import NOW_NS, SECOND_NS, fault
 from testing.waiting import wait_until
 
@@ -48,6 +49,8 @@ def act_as_told(task: DiagnosisTask) -> Outcome:
         time.sleep(0.05)
     if told in RESULTS:
         return Diagnosed(RESULTS[told], NOW_NS)
+    if told == "broken bars":
+        return Diagnosed(fault(), NOW_NS, rotor=BROKEN_ROTOR, supply=SUPPLY)
     if told == "year 9999":
         return Diagnosed(fault(), 253_402_300_799 * SECOND_NS)
     if told == "die" or (told == "die once" and not first_time.exists()):

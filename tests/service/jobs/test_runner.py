@@ -22,7 +22,7 @@ from service.jobs.worker_process import follow_service
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect
 from service.storage.records import RemoteRecord
-from service.storage.states import JobState, RecordingRequestState, RecordingState
+from service.storage.states import AlarmKind, JobState, RecordingRequestState, RecordingState
 from service.timing.backoff import Backoff
 from testing.service.plants import motor, two_motor_plant
 from testing.waiting import wait_until
@@ -72,7 +72,7 @@ def test_every_recording_comes_to_its_end_whatever_the_workers_do(
     repository: Repository, store: RecordingStore
 ) -> None:
     """One run for all of it: worker processes take a second to start."""
-    told = ("fine", "reject", "raise", "die", "die once")
+    told = ("fine", "reject", "raise", "die", "die once", "broken bars")
     ids = {what: add(repository, store, what) for what in told}
     ids["foreign"] = add(repository, store, "fine too", "FAN-A2")
     ids["lost"] = add(repository, store, "lost")
@@ -89,6 +89,7 @@ def test_every_recording_comes_to_its_end_whatever_the_workers_do(
         "raise": "failed",
         "die": "failed",
         "die once": "diagnosed",
+        "broken bars": "diagnosed",
         "foreign": "rejected",
         "lost": "rejected",
     }
@@ -98,6 +99,12 @@ def test_every_recording_comes_to_its_end_whatever_the_workers_do(
     assert "the worker process died" in reasons["die"]
     assert "FAN-A2 is not in the plant" in reasons["foreign"]
     assert "exactly one file" in reasons["lost"]
+    (rotor,) = repository.rotor_trend("PUMP-A1", limit=10).items
+    (supply,) = repository.supply_trend("PUMP-A1", limit=10).items
+    assert (rotor.recording_id, supply.recording_id) == (ids["broken bars"],) * 2
+    assert [one.kind for one in repository.open_alarms(motor="PUMP-A1", limit=10).items] == [
+        AlarmKind.ROTOR_WATCH
+    ]
 
 
 @pytest.mark.parametrize("database_url", ["sqlite", "postgresql"], indirect=True)

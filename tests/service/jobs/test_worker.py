@@ -77,6 +77,16 @@ def test_a_record_that_is_no_start_has_nothing_measured_of_one(tmp_path: Path) -
     assert outcome.start is None
 
 
+def test_a_record_tells_of_rotor_and_supply(tmp_path: Path) -> None:
+    record = waveforms(running(REFERENCE, 0.6), noise=0.002)
+    outcome = diagnose_recording(replace(task(written(tmp_path / "EVENT", record)), motor=REFERENCE))
+    assert isinstance(outcome, Diagnosed)
+    assert outcome.rotor is not None
+    assert outcome.rotor.slip == pytest.approx(0.032, abs=0.002)
+    assert outcome.supply is not None
+    assert outcome.supply.frequency_hz == pytest.approx(50.0, abs=0.01)
+
+
 def test_a_record_in_local_time_is_diagnosed_as_of_utc(tmp_path: Path) -> None:
     local = replace(recording(), start_time_ns=nanoseconds("2026-10-25T02:30:00Z"))
     entry = write(tmp_path / "EVENT", local)

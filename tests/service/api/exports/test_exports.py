@@ -23,6 +23,7 @@ from service.storage.states import AlarmKind
 from testing.no_room import no_room
 from testing.service.conditions import FAULT, tell
 from testing.service.diagnosed import add_diagnosed
+from testing.service.examined import BROKEN_ROTOR, SUPPLY, ExaminedRecordings
 from testing.service.observations import observation
 from testing.service.plants import NOW_NS, SECOND_NS, fault, undiagnosable
 from tests.service.api.serving import serving
@@ -116,6 +117,23 @@ def test_the_header_accept_chooses_the_format(
     assert client.get(TREND, headers={"Accept": accept}, params={"format": "json"}).json()["items"]
     answer = client.get(f"{EXPORTS}/trend", headers={"Accept": accept})
     assert answer.headers["content-type"].partition(";")[0] in ("text/csv", XLSX, PARQUET)
+
+
+@pytest.mark.parametrize("accept", ["text/csv", XLSX, PARQUET])
+def test_a_trend_has_what_is_shown_of_rotor_and_supply(
+    client: httpx.Client, repository: Repository, store: RecordingStore, accept: str
+) -> None:
+    recorded = ExaminedRecordings(repository, store)
+    recorded.add(BROKEN_ROTOR, SUPPLY)
+    recorded.add(None)
+    first, second = read(client.get(TREND, headers={"Accept": accept}))
+    figures = {
+        "rotor_severity_dB": -29.0, "rotor_severity_dB_ci95_low": -31.0, "rotor_detection_limit_dB": -52.0,
+        "slip": 0.031, "frequency_hz": 50.01, "voltage_unbalance_nema": 0.0068, "thd_voltage": 0.021,
+    }  # fmt: skip
+    assert first["rotor_state"] == "fault"
+    assert {name: float(first[name]) for name in figures} == figures
+    assert not any(second[name] for name in ("rotor_state", *figures))
 
 
 def test_several_motors_or_all_in_one_file(client: httpx.Client, trend: Sequence[str]) -> None:
