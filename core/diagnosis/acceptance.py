@@ -37,7 +37,7 @@ class Accepted:
     phasors : Fundamental
         Its phasors at supply frequency.
     recording : Recording
-        The whole recording, of which the others hold only the end.
+        The whole recording, of which the others hold only the end; of its channels only those that are used.
     """
 
     terminals: Terminals
@@ -120,8 +120,9 @@ def not_computable(what: str) -> QualityFinding:
 
 def _accept(recording: Recording, motor: Motor, *, currents_only: bool) -> Acceptance:
     """Raise numpy.linalg.LinAlgError or ArithmeticError too, where no phasors can be computed."""
+    used = _currents_of(recording) if currents_only else recording
     measured = terminals(
-        _currents_of(recording) if currents_only else recording,
+        used,
         currents=motor.channels.currents,
         phase_voltages=None if currents_only else motor.channels.phase_voltages,
         line_voltages=None if currents_only else motor.channels.line_voltages,
@@ -148,9 +149,7 @@ def _accept(recording: Recording, motor: Motor, *, currents_only: bool) -> Accep
     rate, frequency = measured.sample_rate_hz, passed.frequency_hz
     case = case_of(motor, measured.current_abc, passed.voltage_ab, rate, frequency, passed.sequence)
     case = replace(case, voltages_assumed=assumed)
-    return Acceptance(
-        tuple(quality), assumed, Accepted(measured, case, fundamental_of(case), recording), does
-    )
+    return Acceptance(tuple(quality), assumed, Accepted(measured, case, fundamental_of(case), used), does)
 
 
 def _without_voltages(

@@ -124,7 +124,7 @@ class _Record:
     @property
     def highest(self) -> float:
         """Farthest lines that the means over a cycle leave, in cycles over the record."""
-        return HIGHEST_OVER_SUPPLY * self.baseband.duration_s / self.baseband.cycle_s
+        return HIGHEST_OVER_SUPPLY * self.baseband.span_s / self.baseband.cycle_s
 
     @property
     def search(self) -> tuple[float, float]:
@@ -144,7 +144,7 @@ class _Record:
     ) -> RotorLines:
         """Return what lines mean, perhaps with another motor's parameters or another fundamental."""
         known, record = motor or self.motor, baseband or self.baseband
-        distance = kappa * (2.0 * pi * self.turns / self.baseband.duration_s)
+        distance = kappa * (2.0 * pi * self.turns / self.baseband.span_s)
         return rotor_lines(lines, distance, running_point(record, known), known)
 
     def asymmetry(

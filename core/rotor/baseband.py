@@ -61,8 +61,13 @@ class Baseband:
 
     @property
     def duration_s(self) -> float:
-        """Length of the stretch [s]."""
-        return float(self.time_s[-1] - self.time_s[0]) + float(self.time_s[1] - self.time_s[0])
+        """Length of the samples that the means are taken from [s]."""
+        return float(self.time_s[-1] - self.time_s[0]) + 2.0 * self.cycle_s
+
+    @property
+    def span_s(self) -> float:
+        """Time from the first mean to the last [s]."""
+        return float(self.time_s[-1] - self.time_s[0])
 
     def gain(self, frequency_hz: Array) -> Array:
         """Return what the means leave of lines at a distance from the fundamental.

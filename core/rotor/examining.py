@@ -32,13 +32,11 @@ def examine_rotor(accepted: Accepted, diagnosis: Diagnosis) -> RotorFinding:
         State, figures and reasons. A number of broken bars does not follow from them.
     """
     case, motor = accepted.case, accepted.case.motor
-    baseband = baseband_of(accepted)
-    duration_s, time_offset_s = baseband.duration_s, diagnosis.time_offset_s
-    if time_offset_s is None:
-        return _unsupported(
-            duration_s, "the diagnosis of the stator did not recognise the motor in this record"
-        )
-    baseband = without_delay(baseband, motor, time_offset_s, assumed=case.voltages_assumed)
+    recorded = baseband_of(accepted)
+    duration_s = recorded.duration_s
+    baseband = without_delay(recorded, motor, diagnosis.time_offset_s, assumed=case.voltages_assumed)
+    if baseband is None:
+        return _unsupported(duration_s, "the currents are not those of this motor at these voltages")
     point = running_point(baseband, motor)
     slip, load_level = point.slip(motor), point.torque_Nm / motor.nameplate.rated_torque_Nm
     unsupported = partial(_unsupported, duration_s, slip=slip, load_level=load_level)

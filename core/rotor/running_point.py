@@ -120,7 +120,9 @@ def slip_course(baseband: Baseband, motor: Motor, slip: float) -> Array:
     return np.asarray(slip * slow(baseband.time_s, torque) / torque.mean())
 
 
-def without_delay(baseband: Baseband, motor: Motor, time_offset_s: float, *, assumed: bool) -> Baseband:
+def without_delay(
+    baseband: Baseband, motor: Motor, time_offset_s: float | None, *, assumed: bool
+) -> Baseband | None:
     """Take the delay of the currents off that the diagnosis found, where there has to be one.
 
     The diagnosis fits a delay freely, and gives it what wrong parameters do to the reactive current. One that
@@ -132,15 +134,17 @@ def without_delay(baseband: Baseband, motor: Motor, time_offset_s: float, *, ass
         The record.
     motor : Motor
         Parameters of the motor and their tolerances.
-    time_offset_s : float
-        Delay of the currents against the voltages that the diagnosis fitted [s].
+    time_offset_s : float or None
+        Delay of the currents against the voltages that the diagnosis fitted [s]; None where it did not
+        recognise the motor.
     assumed : bool
         Whether no voltages were recorded; the delay then tells the direction of those that are assumed.
 
     Returns
     -------
-    Baseband
-        The record, its currents in step with the voltages.
+    Baseband or None
+        The record, its currents in step with the voltages; None where neither tolerances nor a delay
+        explain the currents.
     """
     drawn = _drawn_beside_model(baseband, motor)
     explained = 0.0
@@ -148,6 +152,8 @@ def without_delay(baseband: Baseband, motor: Motor, time_offset_s: float, *, ass
         explained = hypot(explained, deviations * abs(_drawn_beside_model(wrong, other) - drawn))
     if not assumed and abs(drawn) <= OFFSET_BEYOND * explained:
         return baseband
+    if time_offset_s is None:
+        return None
     return _turned(baseband, float(baseband.angular_frequency.mean()) * time_offset_s)
 
 

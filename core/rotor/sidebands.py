@@ -156,5 +156,5 @@ def without_lines(baseband: Baseband, angle: Array, kappa: Array, lines: Lines) 
 
 def _gain(baseband: Baseband, angle: Array, kappa: Array) -> Array:
     """Return what the means over cycles leave of the lines."""
-    mean_hertz = float(angle[-1] - angle[0]) / (2.0 * np.pi * baseband.duration_s)
+    mean_hertz = float(angle[-1] - angle[0]) / (2.0 * np.pi * baseband.span_s)
     return baseband.gain(kappa * mean_hertz)

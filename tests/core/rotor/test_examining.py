@@ -157,6 +157,19 @@ def test_currents_that_are_delayed_do_not_move_the_severity() -> None:
     assert _severity(found) == pytest.approx(ONE_BAR_DB, abs=WITHIN_DB)
 
 
+def test_a_motor_that_the_diagnosis_does_not_recognise_is_examined_where_its_currents_fit() -> None:
+    acceptance = accept(RotorCase(MEDIUM, broken_share=ONE_BAR).record(5.0), MEDIUM)
+    assert acceptance.accepted is not None
+    nameless = replace(diagnose_accepted(acceptance), time_offset_s=None)
+    assert examine_rotor(acceptance.accepted, nameless).state is RotorState.FAULT
+    machine = MEDIUM.parameters
+    other = replace(machine, stator_self_inductance_H=1.6 * machine.stator_self_inductance_H)
+    case = replace(acceptance.accepted.case, motor=replace(MEDIUM, parameters=other))
+    found = examine_rotor(replace(acceptance.accepted, case=case), nameless)
+    assert found.state is RotorState.UNSUPPORTED
+    assert "not those of this motor" in found.reasons[0]
+
+
 def test_load_bins_are_tenths_of_the_rated_load() -> None:
     assert [load_bin(level) for level in (-0.1, 0.0, 0.25, 0.999, 1.0, 1.19, 3.0)] == [0, 0, 2, 9, 10, 11, 11]
 

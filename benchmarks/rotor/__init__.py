@@ -1,0 +1,1 @@
+"""What records tell of broken rotor bars: found, missed and falsely alarmed, on simulated motors."""

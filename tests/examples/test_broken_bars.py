@@ -1,0 +1,33 @@
+"""The example that looks for broken bars."""
+
+import runpy
+import sys
+from pathlib import Path
+
+import pytest
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "find_broken_bars.py"
+
+
+def _printed(capsys: pytest.CaptureFixture[str]) -> list[str]:
+    runpy.run_path(str(EXAMPLE), run_name="__main__")
+    return [line for line in capsys.readouterr().out.splitlines() if not line.startswith(" ")]
+
+
+def test_without_files_it_tells_a_whole_cage_from_a_broken_bar(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(sys, "argv", [EXAMPLE.name])
+    whole, broken = _printed(capsys)
+    assert whole.startswith("healthy: ")
+    assert broken.startswith("fault: ")
+
+
+def test_of_a_short_recording_it_tells_how_long_one_would_do(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = EXAMPLE.parent
+    monkeypatch.setattr(sys, "argv", [EXAMPLE.name, str(folder / "RUNNING.CFG"), str(folder / "motor.toml")])
+    (line,) = _printed(capsys)
+    assert line.startswith("unsupported: ")
+    assert "it takes 0.5 s" in line
