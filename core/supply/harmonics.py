@@ -108,9 +108,8 @@ def _phases(supply: NDArray[np.complex128]) -> NDArray[np.float64]:
 
 
 def _drift_hz(phase: NDArray[np.float64], frequency_hz: float, block_s: float) -> float:
-    """Return the mean frequency beside the given one, from the course of the phase over the blocks [Hz]."""
+    """Return the mean frequency beside the given one: cycles from the first block to the last [Hz]."""
     if phase.size < 2:
         return 0.0
-    number = np.arange(phase.size)
-    beside = np.unwrap(phase - 2.0 * pi * frequency_hz * block_s * number)
-    return float(np.polyfit(number, beside, 1)[0] / (2.0 * pi * block_s))
+    beside = np.unwrap(phase - 2.0 * pi * frequency_hz * block_s * np.arange(phase.size))
+    return float(beside[-1] - beside[0]) / (2.0 * pi * block_s * (phase.size - 1))

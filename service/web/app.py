@@ -9,6 +9,7 @@ from service.web.audit import routes as audit
 from service.web.fleet import routes as fleet
 from service.web.html_problems import HtmlProblems
 from service.web.live import routes as live
+from service.web.load import routes as load
 from service.web.motor import routes as motor
 from service.web.notifications import routes as notifications
 from service.web.people import account
@@ -38,6 +39,7 @@ ROOMS = (
     plant,
     notifications,
     motor,
+    load,
     starts,
 )
 """Each has the routes of some pages in its `router`."""

@@ -72,6 +72,20 @@ def starts(
     show_starts(url, motor, limit=limit, as_csv=as_csv, as_json=as_json)
 
 
+@commands.command()
+def load(
+    motor: MotorName,
+    url: Url = DEFAULT_URL,
+    days: Annotated[int, typer.Option(min=1, max=90, help="Of so many days; up to 2 by minutes.")] = 30,
+    *,
+    as_json: Json = False,
+) -> None:
+    """Show how a motor was loaded: hours by torque, hours beyond limits, and how hot it is."""
+    from service.cli.load import show_load
+
+    show_load(url, motor, days=days, as_json=as_json)
+
+
 recordings = typer.Typer(cls=DefaultGroup, help="List recordings that the service has, or download one.")
 commands.add_typer(recordings, name="recordings")
 

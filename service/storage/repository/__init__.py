@@ -17,6 +17,7 @@ from service.storage.repository.folders import FolderRows
 from service.storage.repository.folding import FoldingRows
 from service.storage.repository.history.condition_days import ConditionDayRows
 from service.storage.repository.history.conditions import PastConditionRows
+from service.storage.repository.history.metered import MeteredRows
 from service.storage.repository.history.neighbours import NeighbourRows
 from service.storage.repository.history.rotor import RotorRows
 from service.storage.repository.history.seen_records import SeenRecordRows
@@ -57,6 +58,7 @@ class Repository(
     MotorHealthRows,
     MotorVersionRows,
     SeenRecordRows,
+    MeteredRows,
     StartRows,
     RotorRows,
     SupplyRows,

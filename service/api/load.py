@@ -1,0 +1,37 @@
+"""How a motor was loaded, by what its relay meters."""
+
+import time
+from typing import Annotated, Final
+
+from fastapi import APIRouter, Query
+
+from service.access.permissions import Permission
+from service.api.access.requirements import require
+from service.api.context import Context
+from service.api.document import Name
+from service.api.load_schemas import LoadProfile, load_document
+from service.api.problems import problems
+from service.condition.metered_load import motor_load
+from service.condition.motor_data import motor_known
+
+MOST_DAYS: Final = 90
+USUAL_DAYS: Final = 30
+
+router = APIRouter(prefix="/motors/{name}", tags=["condition"])
+
+
+@router.get("/load-profile", responses=problems(404), dependencies=[require(Permission.VIEW)])
+def get_load_profile(
+    context: Context,
+    name: Name,
+    days: Annotated[
+        int, Query(ge=1, le=MOST_DAYS, description="Of so many days; up to 2 by minutes.")
+    ] = USUAL_DAYS,
+) -> LoadProfile:
+    """Return how a motor was loaded: hours by torque, energy, starts, hours beyond limits, and its heat."""
+    context.require_motor(name)
+    versions = context.repository.motor_versions(name)
+    if not versions:
+        return LoadProfile()
+    motor = motor_known(name, versions[-1].document)
+    return load_document(motor_load(context.repository, motor, days=days, now_ns=time.time_ns()))

@@ -1,0 +1,114 @@
+"""Documents of how a motor was loaded. Fields that are null are not known (yet)."""
+
+from pydantic import Field
+
+from service.api.document import Document, Listed
+from service.api.times import Time
+from service.condition.metered_load import MotorLoad
+
+Interval = tuple[float, float]
+
+
+class LoadClass(Document):
+    """Hours and energy in a class of torque, over the rated one; the last class has no upper end."""
+
+    from_level: float
+    to_level: float | None
+    hours: float
+    energy_kWh: float
+
+
+class LimitHours(Document):
+    """How long something was beyond a limit. longest_hours: without a break. worst: value furthest beyond.
+
+    known_hours: time of which the quantity is known.
+    """
+
+    name: str
+    limit: float
+    below: bool
+    hours: float
+    known_hours: float
+    longest_hours: float
+    worst: float | None
+
+
+class ThermalState(Document):
+    """Rises above the ambient temperature, between bounds, of a usual motor with such currents.
+
+    winding_rise_K, frame_rise_K: as if the motor had stood, and had run at rated current, where nothing is
+    known. from_resistance_K: how much hotter the winding is than in the record of reference_time, by its
+    resistance (..._ci95: 95 % interval); reasons: why that is not told.
+    """
+
+    winding_rise_K: Interval | None
+    frame_rise_K: Interval | None
+    from_resistance_K: float | None
+    from_resistance_K_ci95: Interval | None
+    record_time: Time | None
+    reference_time: Time | None
+    reasons: Listed[str]
+
+
+class LoadProfile(Document):
+    """How a motor was loaded. All is null, or empty, before a service has read the motors file.
+
+    step_s: of the means that it is told by. running_hours, standing_hours and unknown_hours make up the whole
+    time. unclassed_hours: running, at a load that is not known. duty: running over known hours. starts: at
+    least so many.
+    """
+
+    from_time: Time | None = None
+    to_time: Time | None = None
+    step_s: int | None = None
+    classes: Listed[LoadClass] = Field(default_factory=list)
+    running_hours: float | None = None
+    standing_hours: float | None = None
+    unknown_hours: float | None = None
+    unclassed_hours: float | None = None
+    energy_kWh: float | None = None
+    duty: float | None = None
+    mean_load: float | None = None
+    starts: int | None = None
+    limits: Listed[LimitHours] = Field(default_factory=list)
+    thermal: ThermalState | None = None
+
+
+def load_document(load: MotorLoad) -> LoadProfile:
+    """Return the document of how a motor was loaded."""
+    profile = load.profile.as_dict()
+    return LoadProfile.model_validate(
+        {
+            **profile,
+            "from_time": profile.pop("from_ns"),
+            "to_time": profile.pop("to_ns"),
+            "step_s": load.step.value,
+            "limits": [
+                {
+                    "name": one.name,
+                    "limit": one.limit,
+                    "below": one.below,
+                    "hours": one.found.hours,
+                    "known_hours": one.found.known_hours,
+                    "longest_hours": one.found.longest_hours,
+                    "worst": one.found.worst,
+                }
+                for one in load.limits
+            ],
+            "thermal": _thermal(load),
+        }
+    )
+
+
+def _thermal(load: MotorLoad) -> dict[str, object]:
+    rises, winding = load.rises, load.winding
+    found = None if winding is None else winding.found
+    return {
+        "winding_rise_K": None if rises is None else (rises.low.winding_K, rises.high.winding_K),
+        "frame_rise_K": None if rises is None else (rises.low.frame_K, rises.high.frame_K),
+        "from_resistance_K": None if found is None else found.rise_K,
+        "from_resistance_K_ci95": None if found is None else found.rise_K_ci95,
+        "record_time": None if winding is None else winding.time_ns,
+        "reference_time": None if winding is None else winding.reference_ns,
+        "reasons": ("there are no two records of the same sensors",) if found is None else found.reasons,
+    }

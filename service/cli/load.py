@@ -1,0 +1,86 @@
+"""`mcc load`: how a motor was loaded, by what its relay meters."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from rich.box import SIMPLE_HEAD
+
+from core.quantity_text import plain
+from service.cli.output import facts_table, failing_clearly, print_document, results
+from service.client.rest_client import ServiceClient, ServiceError, segment
+from service.client.tables import FittedTable
+
+NOT_TOLD = "-"
+
+
+def show_load(url: str, motor: str, *, days: int, as_json: bool) -> None:
+    """Print a motor's load profile, hours beyond limits, and how hot it is. Raises CommandError."""
+    with failing_clearly(ServiceError), ServiceClient(url) as service:
+        load = service.get(f"/motors/{segment(motor)}/load-profile", days=str(days))
+    if as_json:
+        print_document(load)
+        return
+    console = results()
+    console.print(facts_table(_facts(load), title=f"{motor}: load of {days} days"))
+    console.print(_classes(load))
+    console.print(_limits(load))
+
+
+def _facts(load: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    yield "running", _hours(load["running_hours"])
+    yield "standing", _hours(load["standing_hours"])
+    yield "not known", _hours(load["unknown_hours"])
+    yield "duty", _percent(load["duty"])
+    yield "mean load", _percent(load["mean_load"])
+    yield "energy", NOT_TOLD if load["energy_kWh"] is None else f"{plain(load['energy_kWh'])} kWh"
+    yield "starts", NOT_TOLD if load["starts"] is None else f"at least {load['starts']}"
+    thermal = load["thermal"]
+    if thermal is None:
+        return
+    yield (
+        "winding",
+        f"{_kelvin(thermal['winding_rise_K'])} above ambient, of a usual motor with such currents",
+    )
+    by_resistance = thermal["from_resistance_K_ci95"]
+    if by_resistance is None:
+        yield "by resistance", "; ".join(thermal["reasons"])
+    else:
+        yield "by resistance", f"{_kelvin(by_resistance)} against the record of {thermal['reference_time']}"
+
+
+def _classes(load: Mapping[str, Any]) -> FittedTable:
+    table = FittedTable(box=SIMPLE_HEAD, collapse_padding=True)
+    table.add_column("load", no_wrap=True)
+    table.add_column("hours", justify="right")
+    table.add_column("energy kWh", justify="right")
+    for one in load["classes"]:
+        low, high = one["from_level"], one["to_level"]
+        ends = f"{100 * low:.0f} % and more" if high is None else f"{100 * low:.0f} to {100 * high:.0f} %"
+        table.add_row(ends, plain(one["hours"]), plain(one["energy_kWh"]))
+    return table
+
+
+def _limits(load: Mapping[str, Any]) -> FittedTable:
+    table = FittedTable(box=SIMPLE_HEAD, collapse_padding=True)
+    table.add_column("beyond a limit")
+    for heading in ("hours", "of known", "longest", "worst"):
+        table.add_column(heading, justify="right")
+    for one in load["limits"]:
+        table.add_row(
+            one["name"],
+            *(plain(one[name]) for name in ("hours", "known_hours", "longest_hours")),
+            _percent(one["worst"]),
+        )
+    return table
+
+
+def _hours(value: float | None) -> str:
+    return NOT_TOLD if value is None else f"{plain(value)} h"
+
+
+def _percent(share: float | None) -> str:
+    return NOT_TOLD if share is None else f"{100 * share:.1f} %"
+
+
+def _kelvin(ends: list[float] | None) -> str:
+    return NOT_TOLD if ends is None else f"{ends[0]:.0f} to {ends[1]:.0f} K"

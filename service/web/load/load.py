@@ -1,0 +1,38 @@
+"""What the page of a motor's load shows, read from the repository."""
+
+from dataclasses import dataclass
+from typing import Final
+
+from markupsafe import Markup
+
+from core.load.profile import CLASS_WIDTH
+from service.condition.metered_load import MotorLoad, motor_load
+from service.condition.motor_data import motor_known
+from service.pictures.load_profile import LoadShare, load_profile_picture
+from service.pictures.looks import PAGE, Look
+from service.storage import Repository
+from service.web.pictures import markup
+
+SPANS: Final = (1, 7, 30, 90)
+"""Days that can be chosen."""
+
+
+@dataclass(frozen=True, slots=True)
+class LoadPage:
+    """What the page shows. picture: of the profile, as SVG."""
+
+    load: MotorLoad
+    picture: Markup
+
+
+def load_page(
+    repository: Repository, motor: str, *, days: int, now_ns: int, look: Look = PAGE
+) -> LoadPage | None:
+    """Read what the page shows; None before a service has read the motors file. Raises NotFoundError."""
+    versions = repository.motor_versions(motor)
+    if not versions:
+        return None
+    load = motor_load(repository, motor_known(motor, versions[-1].document), days=days, now_ns=now_ns)
+    shares = [LoadShare(one.from_level + CLASS_WIDTH / 2.0, one.hours) for one in load.profile.classes]
+    picture = load_profile_picture(motor, shares, of_what="of the running time", look=look)
+    return LoadPage(load, markup(picture))

@@ -1,0 +1,73 @@
+"""The load profile over REST, of a day that is counted by hand."""
+
+import httpx
+import pytest
+
+from core.machines.parameters import Connection
+from service.storage import Repository
+from testing.machines.motors import REFERENCE
+from testing.service.metered_days import POWER_W, meter_a_day
+
+URL = "/api/v1/motors/PUMP-A1/load-profile"
+
+
+def test_a_day_of_metering(client: httpx.Client, repository: Repository) -> None:
+    meter_a_day(repository)
+
+    load = client.get(URL, params={"days": 7}).json()
+
+    assert load["step_s"] == 900
+    assert (load["running_hours"], load["standing_hours"]) == (15.0, 6.0)
+    assert load["unknown_hours"] == pytest.approx(7 * 24.0 - 21.0)
+    assert load["energy_kWh"] == pytest.approx(15.0 * POWER_W / 1000.0)
+    assert load["duty"] == pytest.approx(15.0 / 21.0)
+    assert load["starts"] == 1  # it stood before the silence, and ran behind it
+    used = [one for one in load["classes"] if one["hours"]]
+    assert [one["hours"] for one in used] == [15.0]
+    plate, machine = REFERENCE.nameplate, REFERENCE.parameters
+    assert plate.connection is Connection.STAR
+    squares = 3.0 * (POWER_W / (3.0**0.5 * plate.rated_voltage_V * 0.75)) ** 2
+    torque = (POWER_W - machine.stator_resistance_ohm * squares) / plate.rated_power_W
+    assert used[0]["from_level"] <= torque < used[0]["to_level"]
+    assert load["mean_load"] == pytest.approx(torque)
+
+
+def test_hours_beyond_limits(client: httpx.Client, repository: Repository) -> None:
+    meter_a_day(repository)
+
+    limits = {one["name"]: one for one in client.get(URL).json()["limits"]}
+
+    low = limits["voltage below 90 %"]
+    assert (low["hours"], low["longest_hours"], low["known_hours"]) == (1.0, 1.0, 21.0)
+    assert low["worst"] == pytest.approx(0.88)
+    uneven = limits["unbalance above 1 %"]
+    assert uneven["hours"] == 1.0
+    assert uneven["worst"] == pytest.approx(0.02 / 0.99)
+    assert limits["unbalance above 5 %"]["hours"] == 0.0
+    assert limits["load above rated"]["known_hours"] == 15.0
+
+
+def test_heat_lies_between_bounds_that_known_hours_close(
+    client: httpx.Client, repository: Repository
+) -> None:
+    meter_a_day(repository)
+
+    thermal = client.get(URL).json()["thermal"]
+
+    low, high = thermal["winding_rise_K"]
+    assert 5.0 < low < high < 80.0
+    assert high - low < 25.0
+    assert thermal["from_resistance_K"] is None
+    assert thermal["reasons"] == ["there are no two records of the same sensors"]
+
+
+def test_a_motor_of_which_nothing_is_metered(client: httpx.Client, repository: Repository) -> None:
+    nothing = client.get("/api/v1/motors/FAN-A2/load-profile").json()
+    assert nothing["classes"] == []
+    assert nothing["running_hours"] is None
+
+    meter_a_day(repository)
+    minutes = client.get(URL, params={"days": 1}).json()
+    assert minutes["step_s"] == 60
+    assert client.get(URL, params={"days": 91}).status_code == 422
+    assert client.get("/api/v1/motors/NOPE/load-profile").status_code == 404

@@ -1,0 +1,47 @@
+"""`mcc load` against the API on a real port."""
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+
+import httpx
+import pytest
+
+from service.api import ApiContext, create_app
+from service.cli.app import main
+from service.configuration.settings import Settings
+from service.recording_store.store import RecordingStore
+from service.storage import Repository
+from testing.service.metered_days import meter_a_day
+from tests.service.api.serving import serving
+from tests.service.fixtures import database_url, engine, repository, store
+
+__all__ = ["database_url", "engine", "repository", "store"]
+
+
+@pytest.fixture
+def client(repository: Repository, store: RecordingStore, tmp_path: Path) -> Iterator[httpx.Client]:
+    with serving(create_app(ApiContext(Settings(data_directory=tmp_path), repository, store))) as client:
+        yield client
+
+
+def test_load_in_words_and_as_json(
+    client: httpx.Client, repository: Repository, capsys: pytest.CaptureFixture[str]
+) -> None:
+    meter_a_day(repository)
+
+    assert main(["load", "PUMP-A1", "--url", str(client.base_url)]) == 0
+    words = capsys.readouterr().out
+    assert "15 h" in words
+    assert "at least 1" in words
+    assert "voltage below 90 %" in words
+    assert "K above ambient" in words
+
+    assert main(["load", "PUMP-A1", "--days", "7", "--json", "--url", str(client.base_url)]) == 0
+    assert json.loads(capsys.readouterr().out)["standing_hours"] == 6.0
+
+
+def test_a_motor_of_which_nothing_is_known(client: httpx.Client, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["load", "FAN-A2", "--url", str(client.base_url)]) == 0
+    assert "15 h" not in capsys.readouterr().out
+    assert main(["load", "NOPE", "--url", str(client.base_url)]) == 1

@@ -1,0 +1,29 @@
+"""The page of a motor's load."""
+
+import httpx
+
+from service.storage import Repository
+from testing.service.metered_days import meter_a_day
+from tests.service.web.pages import addresses, page, words
+
+HERE = "/motors/PUMP-A1/load"
+
+
+def test_the_page_shows_profile_limits_and_heat(client: httpx.Client, repository: Repository) -> None:
+    meter_a_day(repository)
+
+    document = page(client.get(HERE))
+
+    facts = words(document, "#profile-title ~ dl dd")
+    assert facts[:2] == ["15 h", "6 h"]
+    assert facts[-1] == "at least 1"
+    assert "voltage below 90 %1 h21 h1 h88.0 %" in words(document, "section tbody tr")
+    assert "K above ambient" in words(document, "#heat-title ~ dl dd")[0]
+    assert "no two records" in words(document, "#heat-title ~ dl dd")[-1]
+    assert addresses(document, "main p a")[1:] == [f"{HERE}?days={days}" for days in (1, 7, 90)]
+    assert words(document, "figure svg title")
+
+
+def test_a_motor_that_no_service_knows_yet_and_one_that_is_not_there(client: httpx.Client) -> None:
+    assert "has not read the motors file" in words(page(client.get("/motors/FAN-A2/load")), "main")[0]
+    assert client.get("/motors/NOPE/load").status_code == 404
