@@ -37,7 +37,7 @@ RATE_PER_STEP = 2.0
 SETTLING_S = 1.0
 """Least time that a motor is simulated before a window, so that it has settled."""
 TIME_CONSTANTS_TO_SETTLE = 6.0
-"""That time over the time constant of the speed, where this is longer."""
+"""That time over the time constant of the load's speed, where this is longer."""
 DISTURBANCE_MEMORY_S = 2.0
 """Time after a supply event for which a window is simulated from before the event."""
 START_MEMORY_S = 10.0
@@ -45,6 +45,9 @@ START_MEMORY_S = 10.0
 RUN_UPS_REMEMBERED = 5.0
 """That time over the run-up with rated torque, where this is longer."""
 RATED_POWER_FACTOR_TIMES_EFFICIENCY = 0.7
+
+_OF_ROTOR = 1
+"""Tells the random rotor angle of a moment from the random noise of a window."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +65,7 @@ class MotorPlant:
 
     `fault` is None for a healthy motor, and `seed` is that of the noise. With `warming` None the windings
     keep the resistance of the parameters. `broken_bars` is the broken share of the bars of the `cage`, or its
-    course over time, and `joint` a bad one in a line. The rotor's angle is arbitrary at the beginning of each
+    course over time, and `joint` a bad one in a line. The rotor's angle is random at the beginning of each
     window, and with it the phase of all that turns with it. The contactor connects the motor, which then
     starts from rest; with None the motor always runs.
     """
@@ -129,12 +132,14 @@ class MotorPlant:
 
     @property
     def settling_s(self) -> float:
-        """Time that the motor is simulated before a window, so that it has settled."""
+        """Time that the motor is simulated before a window, so that it has settled.
+
+        A motor of usual inertia needs no more than SETTLING_S; a heavy load does.
+        """
         nameplate = self.motor.nameplate
         synchronous = 2 * np.pi * nameplate.rated_frequency_Hz / nameplate.pole_pairs
-        time_constant_s = (
-            self.inertia_kgm2 * synchronous / self._torque_over_slip(nameplate.rated_frequency_Hz)
-        )
+        pull = self._torque_over_slip(nameplate.rated_frequency_Hz)
+        time_constant_s = self.load.inertia_kgm2 * synchronous / pull
         return max(SETTLING_S, TIME_CONSTANTS_TO_SETTLE * time_constant_s)
 
     @property
@@ -344,14 +349,20 @@ class MotorPlant:
         quarter_cycle_ago = np.array([time_s - np.pi / 2 / w])
         flux = circuit.drive @ self.supply.phase_voltages(quarter_cycle_ago)[:, 0] / w
         stator = np.flatnonzero(circuit.drive.any(axis=1))
-        inductance = circuit.inductance(0.0)
+        angle = self._rotor_angle(time_s)
+        inductance = circuit.inductance(angle)
         currents = np.zeros(circuit.loops)
         currents[stator] = np.linalg.solve(inductance[np.ix_(stator, stator)], flux[stator])
 
         pull = self._torque_over_slip(self.supply.frequency(time_s))
         slip = self.load.level_at(time_s) * nameplate.rated_torque_Nm / pull
         speed = self.supply.direction * (1 - slip) * w / nameplate.pole_pairs
-        return np.concatenate((inductance @ currents, [speed, 0.0]))
+        return np.concatenate((inductance @ currents, [speed, angle]))
+
+    def _rotor_angle(self, time_s: float) -> float:
+        """Return an electrical angle of the running rotor: any of a turn of the shaft, always the same."""
+        random = np.random.default_rng([self.seed, round(time_s * 1e6) % 2**63, _OF_ROTOR])
+        return self.motor.nameplate.pole_pairs * float(random.uniform(0.0, 2 * np.pi))
 
     def _torque_over_slip(self, frequency_Hz: float) -> float:
         """Return the torque over the slip where this is small [N m]."""

@@ -107,6 +107,16 @@ def test_a_pulsation_swings_the_speed_at_its_frequency(pulsation: Pulsation, seq
     assert min(lines) > 5e-5 * amplitude(currents, 50)
 
 
+def test_pulsations_of_the_shaft_have_another_phase_in_each_window_and_the_same_every_time() -> None:
+    pulsating = plant(load=Load(0.6, pulsations=(Pulsation(0.3, per_turn=1.0),), inertia_kgm2=0.1))
+    moments_s = (10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 10.0)
+    windows = [pulsating.operation(at_s, 0.2, RATE_HZ).speed_rad_s for at_s in moments_s]
+    assert np.array_equal(windows[0], windows[-1])
+    shaft = np.exp(-1j * np.mean(windows) / RATE_HZ * np.arange(windows[0].size))
+    phasors = np.array([(window - window.mean()) @ shaft for window in windows[:-1]])
+    assert abs(np.mean(phasors / np.abs(phasors))) < 0.8
+
+
 def test_the_loads_inertia_lengthens_the_start_and_the_windows_know() -> None:
     heavy = plant(load=Load(0.3, inertia_kgm2=9 * REFERENCE.parameters.inertia_kgm2))
     seconds = []
