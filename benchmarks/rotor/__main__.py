@@ -19,6 +19,9 @@ within half to twice, and relays with gain errors up to 1 %. A load that swings 
 rated torque. States and figures are those of `core.rotor`: severity is the asymmetry of the rotor's
 resistance. Fault means that its 95 % interval lies above -36 dB, watch that the severity lies above -42 dB.
 
+Unsupported counts what the quality gate refuses, too: three broken bars at full load, beside a load that
+swings, move the current by more than the 18 % of the rated one that it lets pass.
+
 No motor with a broken bar was at hand: these figures rest on simulation.
 """
 SUBJECTS = {
