@@ -8,6 +8,7 @@ from typing import Final
 
 import numpy as np
 
+from core.commissioning.errors import CommissioningError
 from core.commissioning.start_detection import start_of
 from core.machines.parameters import Motor
 from core.rotor.finding import RotorState
@@ -74,8 +75,11 @@ def _record(random: Generator, duration_s: float, loads: tuple[float, float], ba
 
 def _sideband(record: StartRecord, motor: Motor, random: Generator) -> tuple[StartSideband, float]:
     recording = record.of(motor)
-    start = start_of(recording, motor.nameplate, motor.channels)
     figures = measure_start(recording, motor)
+    try:
+        start = start_of(recording, motor.nameplate, motor.channels)
+    except CommissioningError as refused:  # a motor that hangs at half of its speed looks wired wrongly
+        return StartSideband(RotorState.UNSUPPORTED, None, None, None, 0, (str(refused),)), figures.i2t_over_s
     parameters = motor.parameters
 
     def off() -> float:

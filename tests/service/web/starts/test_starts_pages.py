@@ -6,10 +6,14 @@ import httpx
 import pytest
 
 from core.condition.events import Event, EventKind
+from core.starts.examined import ExaminedStart, StartStress
+from core.starts.examining import examine_start
 from core.starts.figures import MotorStart
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from service.storage.records import Actor
+from testing.machines.motors import MEDIUM
+from testing.machines.starts import StartRecord
 from testing.service.plants import NOW_NS, SECOND_NS
 from testing.service.starts import START, RecordedStarts
 from tests.service.web.pages import addresses, page, words
@@ -66,6 +70,39 @@ def test_a_rewound_motor_has_another_reference(
     rows = words(page(client.get(HERE)), "tbody tr")
     assert rows[0].endswith("reference")
     assert "-50 % time" in rows[2]
+
+
+def test_the_page_says_why_the_latest_starts_are_others(
+    client: httpx.Client, recorded: RecordedStarts
+) -> None:
+    stress = StartStress(10_000.0, None, 0.03, None, "motor file", 6)
+    for _ in range(5):
+        recorded.add(ExaminedStart(START, stress=stress))
+    assert not page(client.get(HERE)).cssselect("#starts p.message")
+    weak = replace(START.curve, voltage_V=tuple(0.88 * one for one in START.curve.voltage_V or ()))
+    for _ in range(2):
+        recorded.add(ExaminedStart(replace(START, acceleration_s=1.7, curve=weak), stress=stress))
+
+    document = page(client.get(HERE))
+
+    (told,) = words(document, "#starts p.message")
+    assert told.startswith("The latest starts are other than the first ones: the supply.")
+    assert "the voltage of the run-up is -12 %" in told
+    rows = words(document, "tbody tr")
+    assert "3 %" in rows[0]
+    assert "7 more than the 6 allowed" in rows[0]
+    assert "6 more" not in rows[1]
+    assert "the run-up takes 1.7 s" in rows[0]
+
+
+def test_the_torque_of_a_start_is_drawn(client: httpx.Client, recorded: RecordedStarts) -> None:
+    recorded.add(examine_start(StartRecord(snr_db=45.0).of(MEDIUM), MEDIUM))
+
+    document = page(client.get(HERE))
+
+    titles = [title.partition(".")[0] for title in words(document, "figure svg title")]
+    assert titles[-1] == "PUMP-A1: torque of recorded starts"
+    assert "N m" in words(document, "tbody tr")[0]
 
 
 def test_many_starts_come_in_pages(client: httpx.Client, recorded: RecordedStarts) -> None:
