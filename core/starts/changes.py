@@ -93,7 +93,7 @@ def compare_starts(latest: Sequence[ExaminedStart], reference: Sequence[Examined
         return StartChanges.unknown("there is no start from rest to speed to compare with")
     momentum = _momentum(reference)
     changes = {
-        Quantity.ACCELERATION: _share(Quantity.ACCELERATION, latest, reference, _acceleration),
+        Quantity.ACCELERATION: _share(Quantity.ACCELERATION, latest, reference, _run_up(reference)),
         Quantity.VOLTAGE: _share(Quantity.VOLTAGE, latest, reference, mean_voltage_V),
         Quantity.LOAD: _load_change(latest, reference, momentum),
         Quantity.ROTOR: _rotor_change(latest, reference),
@@ -107,6 +107,8 @@ def compare_starts(latest: Sequence[ExaminedStart], reference: Sequence[Examined
         reasons.append(sideband)
         if StartCause.ROTOR not in causes:
             causes.append(StartCause.ROTOR)
+    if any(one.figures.is_from_rest and one.figures.acceleration_s is None for one in latest):
+        reasons.append("the record ends before the motor is up to speed")
     possible: list[StartCause] = []
     acceleration = found.get(Quantity.ACCELERATION)
     if acceleration is not None and acceleration.is_told and not causes:
@@ -150,6 +152,19 @@ def mean_voltage_V(start: ExaminedStart) -> float | None:
         return figures.lowest_voltage_V
     points = max(1, round(figures.i2t_over_s / figures.curve.step_s))
     return fmean(volts[:points])
+
+
+def _run_up(reference: Sequence[ExaminedStart]) -> Callable[[ExaminedStart], float | None]:
+    """Return what tells how long a start takes, or took at least where its record ends before it does."""
+    usual_s = max(_known(reference, _acceleration), default=inf)
+
+    def run_up(start: ExaminedStart) -> float | None:
+        figures = start.figures
+        if figures.acceleration_s is None and figures.is_from_rest and figures.i2t_over_s > usual_s:
+            return figures.i2t_over_s
+        return figures.acceleration_s
+
+    return run_up
 
 
 def _acceleration(start: ExaminedStart) -> float | None:

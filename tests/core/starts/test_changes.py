@@ -95,6 +95,16 @@ def test_one_start_that_scatters_is_no_change() -> None:
     assert changes.state is ChangeState.AS_BEFORE
 
 
+def test_a_motor_that_does_not_come_to_speed_is_no_motor_as_before() -> None:
+    hangs = ExaminedStart(replace(START, acceleration_s=None, running_current_A=None, i2t_over_s=2.0))
+    short = ExaminedStart(replace(START, acceleration_s=None, running_current_A=None, i2t_over_s=0.5))
+    before = [ExaminedStart(START)] * 3
+
+    assert compare_starts([hangs], before).state is ChangeState.NOT_TOLD_APART
+    assert "before the motor is up to speed" in " ".join(compare_starts([hangs], before).reasons)
+    assert compare_starts([short], before).state is ChangeState.AS_BEFORE
+
+
 def test_the_reference_is_the_first_whole_starts() -> None:
     part = ExaminedStart(replace(START, acceleration_s=None))
     whole = [ExaminedStart(replace(START, acceleration_s=float(k))) for k in range(1, 9)]
