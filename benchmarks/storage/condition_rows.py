@@ -25,7 +25,7 @@ CHANGED = 50
 TOLD = 400
 """And after every 400th a person told something of the motor."""
 
-CURVE = '{"time_s":[0.0,1.0],"current_A":[90.0,15.0],"voltage_V":[361.0,398.0]}'
+CURVE = '{"first_s":0.01,"step_s":0.02,"current_A":[92.0,40.0,14.5],"voltage_V":[361.0,390.0,399.0]}'
 
 STARTED = 300
 """And every 300th recording is that of a start."""
