@@ -36,7 +36,7 @@ class RotorLines:
     Parameters
     ----------
     asymmetry : ndarray of complex, shape (pairs,)
-        a: half the difference of the resistances of the cage's axes, over R_r.
+        Half the difference of the resistances of the cage's axes, over R_r: a.
     load_torque : ndarray of complex, shape (pairs,)
         Amplitude of the load's torque, over rated torque.
     inertia_torque : ndarray of complex, shape (pairs,)

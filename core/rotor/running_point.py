@@ -38,7 +38,7 @@ class RunningPoint:
     rotor_current : complex
         I_r, peak [A].
     slip_over_resistance : float
-        lambda = s w_s / R_r [1/H].
+        Slip over the rotor resistance, lambda = s w_s / R_r [1/H].
     torque_Nm : float
         T_e, the mean over the record [N m].
     """

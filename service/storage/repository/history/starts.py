@@ -33,6 +33,9 @@ _FIGURES = (
 )
 """Columns that are called as the fields of a MotorStart are."""
 
+LOOKED_AT = 10 * REFERENCE_STARTS
+"""Starts among which the first whole ones are looked for."""
+
 
 class StartRows(Sessions):
     def starts(
@@ -68,16 +71,20 @@ class StartRows(Sessions):
             return session.scalars(query).all()
 
     def first_whole_starts(self, motor: str, *, from_ns: int) -> Sequence[StartEntry]:
-        """Return the first few starts of a motor from a time on that were recorded from rest to speed."""
+        """Return the first few starts of a motor from a time on that were recorded from rest to speed.
+
+        They are looked for among the first `LOOKED_AT` starts, however many a motor has.
+        """
         query = (
             select(StartRow)
             .where(StartRow.motor == motor, StartRow.time_ns >= from_ns)
-            .where(StartRow.is_from_rest, StartRow.acceleration_s.is_not(None))
             .order_by(StartRow.time_ns, StartRow.recording_id)
-            .limit(REFERENCE_STARTS)
+            .limit(LOOKED_AT)
         )
         with self._read() as session:
-            return [_entry(row) for row in session.scalars(query)]
+            rows = session.scalars(query).all()
+        whole = [row for row in rows if row.is_from_rest and row.acceleration_s is not None]
+        return [_entry(row) for row in whole[:REFERENCE_STARTS]]
 
     def unmeasured_starts(self, motor: str | None = None) -> int:
         """Return how many stored recordings of starts have no figures: those of earlier versions."""
