@@ -63,7 +63,7 @@ def held_ns(times_ns: Sequence[int], *, longest_ns: int, until_ns: int) -> Itera
     ValueError
         If the times are not in order.
     """
-    for time_ns, next_ns in zip(times_ns, (*times_ns[1:], until_ns), strict=True):
+    for time_ns, next_ns in zip(times_ns, (*times_ns, until_ns)[1:], strict=True):
         if next_ns < time_ns and next_ns != until_ns:
             raise ValueError("times must stand in their order, oldest first")
         yield max(0, min(next_ns, until_ns, time_ns + longest_ns) - time_ns)

@@ -48,6 +48,12 @@ def test_points_that_tell_nothing_are_unknown() -> None:
     assert found.duty is found.mean_load is None
 
 
+def test_a_motor_of_which_nothing_is_known_has_a_profile_that_says_so() -> None:
+    found = day([])
+    assert (found.running_hours, found.standing_hours, found.unknown_hours) == (0.0, 0.0, 24.0)
+    assert found.mean_load is None
+
+
 def test_running_without_a_load_is_counted_apart() -> None:
     found = day([(0, RUNNING, None, None), (1, RUNNING, 0.5, 5000.0)])
 
