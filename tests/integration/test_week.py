@@ -55,6 +55,7 @@ def week(directory: Path) -> Path:
         (r"start_days_ago = \S+", f"start_days_ago = {DAYS}"),
         (r"speed_up = \S+", f"speed_up = {speed_up:g}"),
         (r"leap_every_s = \S+", f"leap_every_s = {LEAP_S:g}"),
+        (r"\[motor\.cage\]\nbars = 28\ntimeline = \[.*\]\n", ""),
         (r"timeline = \[.*\]", f"timeline = [{', '.join(_step(*step) for step in FAULT)}]"),
         (r"swing_period_s = 230000", "swing_period_s = 53000"),
         (r"changes = \[.*\]\n", ""),
