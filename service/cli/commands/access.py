@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from service.cli.commands.options import DEFAULT_URL, Csv, Json, Url
-from service.storage.records.actors import Role
+from service.roles import Role
 
 commands = typer.Typer()
 

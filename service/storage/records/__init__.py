@@ -1,7 +1,8 @@
 """What the repository hands out: plain values, free of the database session they were read in."""
 
+from service.roles import Role
 from service.storage.records.access import ApiToken, LoginLimits, User, UserSession
-from service.storage.records.actors import SERVICE, Actor, Role
+from service.storage.records.actors import SERVICE, Actor
 from service.storage.records.alarms import (
     Alarm,
     AlarmCall,

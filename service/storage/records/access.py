@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from service.storage.records.actors import Role
+from service.roles import Role
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,17 +1,8 @@
 """Who does something, and what they may: people, programs with a token of theirs, parts of the service."""
 
 from dataclasses import dataclass
-from enum import StrEnum
 
-
-class Role(StrEnum):
-    """What somebody is in the plant, after IEC 62351-8. A person may have several."""
-
-    VIEWER = "VIEWER"
-    OPERATOR = "OPERATOR"
-    ENGINEER = "ENGINEER"
-    SECADM = "SECADM"
-    SECAUD = "SECAUD"
+from service.roles import Role
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,9 +14,10 @@ from service.audit.actions import AuditAction
 from service.configuration.settings import Settings
 from service.notifications.digests import due_digests
 from service.recording_store.store import RecordingStore
+from service.roles import Role
 from service.storage import Repository
 from service.storage.records import AlarmPlace, AlarmSpec, Gathering, NewNotification
-from service.storage.records.actors import SERVICE, Actor, Role
+from service.storage.records.actors import SERVICE, Actor
 from service.storage.states import AlarmKind, NotificationKind, NotificationState
 from testing.service.conditions import FAULT, tell
 from testing.service.diagnosed import add_diagnosed

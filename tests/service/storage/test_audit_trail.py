@@ -9,8 +9,9 @@ from sqlalchemy.exc import DatabaseError
 from service.audit.actions import AuditAction
 from service.audit.entries import NO_HASH, Anchor
 from service.audit.verification import Fault, Verification, verify
+from service.roles import Role
 from service.storage import Repository
-from service.storage.records.actors import Actor, Role
+from service.storage.records.actors import Actor
 from testing.service.plants import NOW_NS
 
 ANNA = Actor("anna", "10.0.0.7", frozenset({Role.OPERATOR, Role.ENGINEER}))

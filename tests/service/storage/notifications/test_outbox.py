@@ -4,10 +4,11 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
+from service.roles import Role
 from service.storage import Repository
 from service.storage.errors import StateConflictError
 from service.storage.records import NewNotification, Notification
-from service.storage.records.actors import Actor, Role
+from service.storage.records.actors import Actor
 from service.storage.repository.notifications.outbox import INTERRUPTED
 from service.storage.states import NotificationKind, NotificationState
 from service.timing.backoff import Backoff

@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
+from service.roles import Role
 from service.storage import Repository
 from service.storage.records import (
     AlarmPlace,
@@ -13,7 +14,7 @@ from service.storage.records import (
     NotificationTarget,
     Occurrence,
 )
-from service.storage.records.actors import Actor, Role
+from service.storage.records.actors import Actor
 from service.storage.states import AlarmKind, NotificationKind, NotificationState, NotifiedEvent
 from testing.service.plants import NOW_NS, SECOND_NS
 
