@@ -75,7 +75,7 @@ lint: install
 docs: install
 	$(BIN)/python -m tests.docs
 
-# The second one ends with 1 where a command answers too slowly, the third one where a page does: it needs 10 GB for five
+# The second one ends with 1 where a command answers too slowly, the third one where a page does: it needs 14 GB for five
 # million records. The last one writes docs/evidence/condition.md, in the better part of an hour; with QUICK=1 it prints
 # what a few motors give, within minutes.
 bench: install
