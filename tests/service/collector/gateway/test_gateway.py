@@ -254,7 +254,8 @@ def test_a_stray_file_among_the_marks_of_visits_keeps_no_gateway_from_coming_aga
 
 
 def test_a_gateway_that_cannot_write_what_it_measures_is_not_ready(hall: Hall) -> None:
-    hall.settings = hall.settings.model_copy(update={"metering_period_s": 0.2})
+    # On a busy machine no link may fail: then nothing would be measured, and nothing refused.
+    hall.settings = hall.settings.model_copy(update={"metering_period_s": 0.2, "request_timeout_s": 20.0})
     gateways = GatewayProcesses(hall.settings, hall.plant, hall.repository)
     store = RecordingStore(hall.settings.recordings_directory)
     context = ApiContext(hall.settings, hall.repository, store, readiness={"collector": gateways.problem})
@@ -265,17 +266,19 @@ def test_a_gateway_that_cannot_write_what_it_measures_is_not_ready(hall: Hall) -
     ):
         motor = hall.plant.motors[0].name
         assert eventually(lambda: hall.repository.measurements(motor, 0, limit=1).items, 60)
-        assert client.get("/readyz").json()["parts"]["collector"] == "ready"
+        assert eventually(lambda: client.get("/readyz").json()["parts"]["collector"] == "ready")
         tables.execute(
             "CREATE TRIGGER refusal BEFORE INSERT ON measurements BEGIN SELECT RAISE(ABORT, 'no room'); END"
         )
-        assert eventually(lambda: client.get("/readyz").status_code == 503)
-        failing = client.get("/readyz").json()["parts"]["collector"]
-        assert "/0: batch writer: BatchRefusedError: " in failing
-        assert "the database refuses them: " in failing
-        assert "no room" in failing
+        assert eventually(lambda: "no room" in client.get("/readyz").json()["parts"]["collector"])
+        refused = client.get("/readyz")
+        assert refused.status_code == 503
         (listed,) = client.get("/api/v1/gateways").json()["items"]
-        assert failing == f"{listed['id']}: {listed['problem']}"
+        # Each batch may lose another number of items, so that the two answers need not name the same one.
+        for told in (refused.json()["parts"]["collector"], f"{listed['id']}: {listed['problem']}"):
+            assert told.startswith(f"{listed['id']}: batch writer: BatchRefusedError: ")
+            assert "the database refuses them: " in told
+            assert "no room" in told
         tables.execute("DROP TRIGGER refusal")
         assert eventually(lambda: client.get("/readyz").status_code == 200, 60)
         (listed,) = client.get("/api/v1/gateways").json()["items"]
