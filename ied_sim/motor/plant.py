@@ -2,11 +2,12 @@
 
 Nothing is simulated between windows. A window is simulated from a little before its start, long enough for
 the motor to settle. Supply, load and fault are functions of the time since the simulator's start, so that
-windows of one plant are consistent with each other and the same every time.
+windows of one plant are consistent with each other and the same every time. With a trajectory, a window that
+follows soon goes on where the one before it was.
 """
 
 from dataclasses import dataclass
-from math import ceil, inf, sqrt
+from math import ceil, floor, inf, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,15 +16,17 @@ from core.machines.parameters import Connection, Motor
 from ied_sim.motor.cage import USUAL_CAGE, Cage, cage_loops
 from ied_sim.motor.contactor import Closure, Contactor
 from ied_sim.motor.course import Points, value_at
+from ied_sim.motor.driving import drive
 from ied_sim.motor.eccentricity import CENTRED, Eccentricity
 from ied_sim.motor.fault import NEGLIGIBLE_LEVEL, FaultCourse, TurnFault
-from ied_sim.motor.integration import Drive, Loops, integrate
+from ied_sim.motor.integration import Loops, integrate
 from ied_sim.motor.interpolation import MARGIN, interpolated
 from ied_sim.motor.joint import JointCourse
 from ied_sim.motor.load import Load
 from ied_sim.motor.rotor import RotorLoops, three_coils
 from ied_sim.motor.sensors import Sensors
 from ied_sim.motor.supply import Supply
+from ied_sim.motor.trajectory import Trajectory
 from ied_sim.motor.warming import COLD, ResistanceFactors, Warming
 from ied_sim.motor.windings import WindingCircuit, winding_circuit
 
@@ -45,6 +48,7 @@ START_MEMORY_S = 10.0
 RUN_UPS_REMEMBERED = 5.0
 """That time over the run-up with rated torque, where this is longer."""
 RATED_POWER_FACTOR_TIMES_EFFICIENCY = 0.7
+SAME_MOMENT_S = 1e-9
 
 _OF_ROTOR = 1
 """Tells the random rotor angle of a moment from the random noise of a window."""
@@ -66,8 +70,9 @@ class MotorPlant:
     `fault` is None for a healthy motor, and `seed` is that of the noise. With `warming` None the windings
     keep the resistance of the parameters. `broken_bars` is the broken share of the bars of the `cage`, or its
     course over time, and `joint` a bad one in a line. The rotor's angle is random at the beginning of each
-    window, and with it the phase of all that turns with it. The contactor connects the motor, which then
-    starts from rest; with None the motor always runs.
+    window, and with it the phase of all that turns with it, unless the window goes on from an earlier one's
+    `trajectory`. The contactor connects the motor, which then starts from rest; with None the motor always
+    runs.
     """
 
     motor: Motor
@@ -82,6 +87,7 @@ class MotorPlant:
     joint: JointCourse | None = None
     cage: Cage = USUAL_CAGE
     eccentricity: Eccentricity = CENTRED
+    trajectory: Trajectory | None = None
 
     def window(
         self, start_s: float, duration_s: float, sample_rate_hz: float, *, step_rate_hz: float = STEP_RATE_HZ
@@ -114,9 +120,8 @@ class MotorPlant:
         fine_hz = sample_rate_hz * fineness
         begin_s = start_s - float(delays_s.max()) - MARGIN / fine_hz
         spread = ceil(float(np.ptp(delays_s)) * fine_hz)
-        fine, _ = self._line_currents(
-            begin_s, samples * fineness + spread + 2 * MARGIN, fine_hz, self.settling_s, step_rate_hz
-        )
+        count = samples * fineness + spread + 2 * MARGIN
+        fine, _ = self._line_currents(begin_s, count, fine_hz, self.settling_s, step_rate_hz)
         firsts = (start_s - delays_s - begin_s) * fine_hz
         return np.vstack(
             [
@@ -211,14 +216,40 @@ class MotorPlant:
         if begin_s - closure.closed_s > self.start_memory_s:
             circuit = self.circuit(begin_s)
             from_s = self.supply.disturbed_since(begin_s, DISTURBANCE_MEMORY_S) - settling_s
-            settling = ceil((begin_s - from_s) * sample_rate_hz)
+            state, settling = self._before(circuit, closure, from_s, begin_s, sample_rate_hz)
             from_s = begin_s - settling / sample_rate_hz
-            state = self._running_state(circuit, from_s)
-            currents, speed = self._simulate(
-                circuit, state, from_s, settling + last, sample_rate_hz, step_rate_hz
-            )
+
+            def simulate(first_s: float, count: int) -> tuple[Array, Array]:
+                return self._simulate(circuit, state, first_s, count, sample_rate_hz, step_rate_hz)
+
+            samples = settling + last
+            if self.trajectory is None:
+                currents, speed = simulate(from_s, samples)
+            else:
+                currents, speed = self.trajectory.simulated(simulate, state, from_s, samples, sample_rate_hz)
             return 0, currents[:, settling:], speed[settling:]
         return self._from_rest(closure.closed_s, begin_s, last, sample_rate_hz, step_rate_hz)
+
+    def _before(
+        self, circuit: WindingCircuit, closure: Closure, from_s: float, begin_s: float, sample_rate_hz: float
+    ) -> tuple[Array, int]:
+        """Return a state of the running motor some samples before `begin_s`, and how many these are.
+
+        It is one passed since `from_s`, or else an estimate at about that time.
+        """
+        passed = None
+        if self.trajectory is not None:
+            size = circuit.loops + 2
+            passed = self.trajectory.latest(closure, from_s=from_s, to_s=begin_s, size=size)
+        if passed is None:
+            settling = ceil((begin_s - from_s) * sample_rate_hz)
+            return self._running_state(circuit, begin_s - settling / sample_rate_hz), settling
+        state = passed.state.copy()
+        settling = floor((begin_s - passed.time_s) * sample_rate_hz)
+        apart_s = begin_s - settling / sample_rate_hz - passed.time_s
+        if apart_s > SAME_MOMENT_S:  # windows have grids of their own
+            self._simulate(circuit, state, passed.time_s, 2, 1 / apart_s, STEP_RATE_HZ)
+        return state, settling
 
     def _from_rest(
         self, closed_s: float, begin_s: float, last: int, sample_rate_hz: float, step_rate_hz: float
@@ -310,37 +341,21 @@ class MotorPlant:
         step = 1 / (sample_rate_hz * steps_per_sample)
         half_steps = np.arange(2 * (samples - 1) * steps_per_sample + 1, dtype=np.float64)
         times = first_s + half_steps * (step / 2)
+        nameplate = self.motor.nameplate
+        driven = drive(circuit, self.supply, self.load, nameplate, times, step)
         loops = Loops(
             circuit.leakage,
             circuit.constant,
             circuit.cosine,
             circuit.sine,
             circuit.resistance,
-            self.motor.nameplate.pole_pairs,
+            nameplate.pole_pairs,
             self.inertia_kgm2,
             self.eccentricity.static,
             self.eccentricity.dynamic,
         )
-        currents, speed = integrate(loops, self._drive(circuit, times, step), steps_per_sample, state)
+        currents, speed = integrate(loops, driven, steps_per_sample, state)
         return circuit.line_currents(currents), speed
-
-    def _drive(self, circuit: WindingCircuit, times: Array, step_s: float) -> Drive:
-        """Return what drives and what loads the motor at the times, which are half a step apart."""
-        nameplate, direction = self.motor.nameplate, self.supply.direction
-        rated_torque = direction * nameplate.rated_torque_Nm
-        pulsations = self.load.pulsations
-        supply_angle = self.supply.angle(times)
-        angles = np.zeros((times.size, len(pulsations)))
-        for k, pulsation in enumerate(pulsations):
-            angles[:, k] = pulsation.angle(times, supply_angle)
-        return Drive(
-            np.ascontiguousarray(self.supply.phase_voltages(times).T @ circuit.drive.T),
-            rated_torque * self.load.levels(times),
-            rated_torque * np.array([pulsation.depth for pulsation in pulsations]),
-            np.array([pulsation.order(nameplate.pole_pairs, direction) for pulsation in pulsations]),
-            angles,
-            step_s,
-        )
 
     def _running_state(self, circuit: WindingCircuit, time_s: float) -> Array:
         """Estimate a state close enough to settle from: no-load fluxes, and slip in proportion to torque."""

@@ -4,12 +4,13 @@ import logging
 import threading
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from core.recordings import Channel, Quantity, Recording
 from core.units import NANOSECONDS_PER_SECOND
 from ied_sim.motor.plant import MotorPlant
 from ied_sim.motor.sensors import CHANNELS
+from ied_sim.motor.trajectory import Trajectory
 from ied_sim.relay.plant_clock import PlantClock
 
 log = logging.getLogger(__name__)
@@ -37,9 +38,10 @@ class Capture:
 class EventRecorder:
     """Captures `plant` around each trigger and passes the capture to `store` after its last sample.
 
-    A capture ends the post-trigger time after its trigger, as
-    in a relay that has to wait for its samples. A trigger meanwhile makes no second record. `store` is called
-    in the capture's own thread.
+    A capture ends the post-trigger time after its trigger, as in a relay that has to wait for its samples. A
+    trigger meanwhile makes no second record. A trigger soon after makes one that goes on where this one was,
+    with waveforms in common as far as its pre-trigger time reaches back. `store` is called in the capture's
+    own thread, one capture after the other.
     """
 
     def __init__(
@@ -52,14 +54,14 @@ class EventRecorder:
         store: Callable[[Capture], None],
     ) -> None:
         self._relay_name = relay_name
-        self._plant = plant
+        self._plant = replace(plant, trajectory=Trajectory())
         self._settings = settings
         self._clock = clock
         self._store = store
         self._lock = threading.Lock()
         self._stopping = threading.Event()
         self._capturing = False
-        self._capture = threading.Thread()
+        self._capture: threading.Thread | None = None
 
     def trigger(self, time_ns: int, kind: str, *, on_start: Callable[[], None]) -> bool:
         """Start a capture at `time_ns`; return False if one is under way or the recorder has stopped.
@@ -76,28 +78,35 @@ class EventRecorder:
             if self._stopping.is_set():
                 return False
             self._capture = threading.Thread(
-                target=self._run, args=(time_ns, kind), name=f"{self._relay_name} capture", daemon=True
+                target=self._run,
+                args=(time_ns, kind, self._capture),
+                name=f"{self._relay_name} capture",
+                daemon=True,
             )
             self._capture.start()
         log.info("%s: event recorder triggered: %s", self._relay_name, kind)
         return True
 
     def stop(self) -> None:
-        """Abandon a capture under way and wait until its thread has ended."""
+        """Abandon a capture under way and wait until all are stored."""
         with self._lock:
             self._stopping.set()
-        if self._capture.ident is not None:
+        if self._capture is not None:
             self._capture.join()
 
-    def _run(self, trigger_ns: int, kind: str) -> None:
+    def _run(self, trigger_ns: int, kind: str, before: threading.Thread | None) -> None:
         try:
             recording = self._capture_event(trigger_ns)
-            if recording is not None:
-                self._store(Capture(trigger_ns, kind, recording))
-        except OSError:
-            log.exception("%s: an event record is lost: it cannot be written", self._relay_name)
         finally:
             self._capturing = False
+        if before is not None:
+            before.join()  # records appear in their order
+        if recording is None:
+            return
+        try:
+            self._store(Capture(trigger_ns, kind, recording))
+        except OSError:
+            log.exception("%s: an event record is lost: it cannot be written", self._relay_name)
 
     def _capture_event(self, trigger_ns: int) -> Recording | None:
         """Simulate at once and wait for the samples' own time.

@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from ied_sim.motor.driving import drive as driven_by
 from ied_sim.motor.eccentricity import Eccentricity
 from ied_sim.motor.fault import TurnFault
-from ied_sim.motor.integration import Drive, Loops, integrate
+from ied_sim.motor.integration import Loops, integrate
 from ied_sim.motor.load import Load, Pulsation
 from ied_sim.motor.plant import MotorPlant
 from ied_sim.motor.supply import Supply
@@ -54,7 +55,7 @@ def test_no_energy_is_lost_or_made() -> None:
     )
     step_s, steps = 1 / 40_000, 12_000
     half_steps = np.arange(2 * steps + 1) * step_s / 2
-    drive: Drive = motor._drive(circuit, half_steps, step_s)
+    drive = driven_by(circuit, motor.supply, motor.load, MEDIUM.nameplate, half_steps, step_s)
     state = np.zeros(circuit.loops + 2)
     currents, speed = integrate(loops, drive, 1, state)
 
