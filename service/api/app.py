@@ -10,18 +10,7 @@ from fastapi.openapi.utils import get_openapi
 from fastapi.routing import APIRoute, iter_route_contexts
 
 from service.access.permissions import Permission
-from service.api import (
-    baselines,
-    conditions,
-    event_reports,
-    examined,
-    load,
-    measurements,
-    motors,
-    probes,
-    problems,
-    starts,
-)
+from service.api import probes, problems
 from service.api.access import sessions, tokens, users
 from service.api.access.gate import Gate
 from service.api.access.requirements import require, requirement_of
@@ -29,19 +18,26 @@ from service.api.alarms import lists as alarm_lists
 from service.api.alarms import people as alarm_people
 from service.api.audit import trail as audit_trail
 from service.api.backups import routes as backups
+from service.api.conditions import notes
+from service.api.conditions import routes as conditions
 from service.api.context import ApiContext
 from service.api.exports import routes as exports
 from service.api.host_guard import HostGuard
 from service.api.limits.arrivals import Arrivals
 from service.api.limits.body_limits import BodyLimits, Route, document
 from service.api.limits.long_lists import LongLists
+from service.api.load import routes as load
+from service.api.motors import baselines, measurements
+from service.api.motors import routes as motors
 from service.api.notifications import routes as notifications
 from service.api.query_parameters import refuse_unknown_parameters
-from service.api.recordings import deletions, diagnoses
+from service.api.recordings import deletions, diagnoses, event_reports
 from service.api.recordings import routes as recordings
 from service.api.relays import routes as relays
 from service.api.reports import routes as reports
+from service.api.rotor_and_supply import routes as rotor_and_supply
 from service.api.samples import routes as samples
+from service.api.starts import routes as starts
 from service.configuration.access import OidcSettings
 
 PREFIX = "/api/v1"
@@ -71,7 +67,8 @@ def create_app(
     for part in (
         motors,
         conditions,
-        examined,
+        notes,
+        rotor_and_supply,
         load,
         baselines,
         starts,

@@ -1,9 +1,11 @@
 """For whoever keeps the service running: alive, ready, and in figures."""
 
 from http import HTTPStatus
+from typing import Literal
 
 from fastapi import APIRouter, Request, Response
 from fastapi.responses import JSONResponse, PlainTextResponse
+from pydantic import BaseModel
 from sqlalchemy.exc import SQLAlchemyError
 
 from service.access.permissions import Permission
@@ -11,10 +13,16 @@ from service.api.access.requirements import open_to_all, require
 from service.api.context import ApiContext, Context
 from service.api.metrics.exposition import MEDIA_TYPE, exposition
 from service.api.problems import problem_response, problems
-from service.api.schemas import Status
 from service.timing.database_silence import database_trouble
 
 router = APIRouter(tags=["operation"])
+
+
+class Status(BaseModel):
+    """Whether the service runs, or its parts work."""
+
+    status: Literal["ok", "ready"]
+    parts: dict[str, str] = {}
 
 
 @router.get("/healthz", dependencies=[open_to_all()])

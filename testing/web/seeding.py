@@ -35,10 +35,10 @@ from service.storage.records import Actor, RelayFindings, Role, Sample
 from service.storage.states import AlarmKind, LinkState
 from testing.service.conditions import DRIFTING, HEALTHY, tell
 from testing.service.database import make_database
-from testing.service.examined import SOUND_ROTOR, SUPPLY
 from testing.service.job_runner import RUNNER, register_runner
 from testing.service.observations import records_of_a_motor
 from testing.service.plants import fault, healthy, undiagnosable
+from testing.service.rotor_and_supply import SOUND_ROTOR, SUPPLY
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 HOUR_NS = 3600 * NANOSECONDS_PER_SECOND

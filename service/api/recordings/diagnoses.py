@@ -13,7 +13,7 @@ from service.api.access.requirements import require
 from service.api.context import ApiContext, Context, path_to
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
-from service.api.schemas import Diagnosis, DiagnosisRequest, DiagnosisRun
+from service.api.recordings.diagnosis_schemas import Diagnosis, DiagnosisRequest, DiagnosisRun
 from service.storage.records import Actor, Job, JobResult
 
 MOST_DIAGNOSES = 100

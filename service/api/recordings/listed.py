@@ -2,7 +2,7 @@
 
 from service.api.context import ApiContext
 from service.api.pages import Page, page
-from service.api.schemas import ListedRecording
+from service.api.recordings.schemas import ListedRecording
 from service.storage.records import Page as StoredPage
 from service.storage.records import RecordingEntry
 

@@ -23,9 +23,10 @@ from service.api.exports.answers import FILES, ListAnswer
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode
 from service.api.problems import ProblemError, WrongFieldError, problems
 from service.api.recordings.archive import file_stem, zipped
+from service.api.recordings.diagnosis_schemas import Diagnosis
 from service.api.recordings.listed import listed
+from service.api.recordings.schemas import ListedRecording, Recording, RecordingDetails, RecordingFile
 from service.api.recordings.waveform import MAX_POINTS, Waveform, WaveformResponse, intervals_within
-from service.api.schemas import Diagnosis, ListedRecording, Recording, RecordingDetails, RecordingFile
 from service.exports import recordings as table
 from service.recording_store.store import WAVEFORM_SUFFIXES, RecordingStoreError, StoredRecording
 from service.retention.deletion import remove_discarded_folder_if_possible

@@ -16,6 +16,7 @@ from service.api.context import ApiContext, Context
 from service.api.exports.answers import sent_file
 from service.api.problems import problems
 from service.api.recordings.archive import file_stem
+from service.api.recordings.diagnosis_schemas import Diagnosis
 from service.api.samples.opening import in_turn, of_recording
 from service.api.samples.schemas import (
     MOST_POINTS,
@@ -26,7 +27,6 @@ from service.api.samples.schemas import (
     States,
     StateTimeline,
 )
-from service.api.schemas import Diagnosis
 from service.api.times import rfc3339
 from service.storage.records import RecordingEntry
 from service.waveforms.csv_samples import csv_samples

@@ -19,7 +19,7 @@ from core.quantity_text import with_unit
 from core.recordings import RecordingError
 from service.cli.output import WRONG_USE, CommandError, failing_clearly, print_document, results
 from service.cli.recordings.files import read_recording, with_advice
-from service.client.examined import rotor_words, sideband_words, supply_words
+from service.client.rotor_and_supply import rotor_words, sideband_words, supply_words
 from service.client.tables import FittedTable
 from service.client.verdicts import OPERATIONS, detection, interval, level, load, verdict_text
 

@@ -45,7 +45,6 @@ from service.storage.records.diagnoses import (
     TrendPoint,
     interval_of,
 )
-from service.storage.records.examined import RotorEntry, SupplyEntry
 from service.storage.records.fleet import CallingAlarms, FleetMotor
 from service.storage.records.health import MotorHealth, RecordedStarts
 from service.storage.records.measurements import Measurement, Sample
@@ -69,6 +68,7 @@ from service.storage.records.relays import (
     Quarantine,
     RelayFindings,
 )
+from service.storage.records.rotor_and_supply import RotorEntry, SupplyEntry
 from service.storage.records.starts import StartEntry
 
 __all__ = [

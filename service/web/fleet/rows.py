@@ -9,8 +9,8 @@ from hashlib import blake2b
 from core.condition.kinds import State
 from core.diagnosis.verdict import Verdict
 from core.machines.parameters import ParametersSource
-from service.api.condition_documents import condition_document
-from service.api.condition_schemas import Condition
+from service.api.conditions.documents import condition_document
+from service.api.conditions.schemas import Condition
 from service.condition.staleness import Missing, missing, stale_after_ns
 from service.condition.wording import advice_now, cause, expected
 from service.storage.records import CallingAlarms, FleetMotor

@@ -8,7 +8,7 @@ from starlette.responses import Response
 from service.access.permissions import Permission
 from service.api.access.requirements import require
 from service.api.document import Name
-from service.api.load import MOST_DAYS, USUAL_DAYS
+from service.api.load.routes import MOST_DAYS, USUAL_DAYS
 from service.web.load.load import SPANS, load_page
 from service.web.view import Looking
 

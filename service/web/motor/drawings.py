@@ -8,7 +8,7 @@ from markupsafe import Markup
 
 from core.machines.parameters import Motor
 from core.units import NANOSECONDS_PER_DAY
-from service.api.condition_schemas import Condition
+from service.api.conditions.schemas import Condition
 from service.condition.shown_records import asymmetry_of_records, load_points, supply_points
 from service.pictures.asymmetry import asymmetry_picture
 from service.pictures.load import load_picture

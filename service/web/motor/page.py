@@ -6,8 +6,8 @@ from typing import Final
 
 from core.diagnosis.verdict import Verdict
 from core.units import NANOSECONDS_PER_DAY
-from service.api.condition_documents import condition_document
-from service.api.condition_schemas import Condition
+from service.api.conditions.documents import condition_document
+from service.api.conditions.schemas import Condition
 from service.api.context import ApiContext
 from service.condition.staleness import stale_after_ns
 from service.storage import Repository

@@ -8,7 +8,7 @@ from core.rotor.finding import RotorState
 from core.rotor.trend import RotorCondition
 from core.units import NANOSECONDS_PER_SECOND
 from service.alarms.rotor_rules import rotor_advice
-from service.client.examined import STATES, decibels, sideband_words
+from service.client.rotor_and_supply import STATES, decibels, sideband_words
 from service.storage import Repository
 from service.storage.records import RotorEntry
 from service.web.charts import Chart, Kind, Series, Tone

@@ -12,8 +12,8 @@ from core.condition.events import EventKind
 from core.units import NANOSECONDS_PER_SECOND
 from service.access.permissions import Permission
 from service.api.access.requirements import require
-from service.api.condition_schemas import NoteRequest, RestartRequest, Withdrawal
-from service.api.conditions import keep_note
+from service.api.conditions.notes import keep_note
+from service.api.conditions.schemas import NoteRequest, RestartRequest, Withdrawal
 from service.api.document import Name
 from service.api.problems import ProblemError
 from service.web.addresses import address

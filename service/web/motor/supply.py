@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from core.units import NANOSECONDS_PER_SECOND
-from service.client.examined import supply_words
+from service.client.rotor_and_supply import supply_words
 from service.storage import Repository
 from service.storage.records import SupplyEntry
 from service.web.charts import Chart, Kind, Series, Tone

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from service.api.condition_schemas import Condition
+from service.api.conditions.schemas import Condition
 from service.condition.staleness import missing
 from service.condition.wording import advice_now, expected, finding, level_ahead
 from service.storage.records import MotorHealth

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 from core.rotor.finding import RotorFinding, RotorState
 from core.supply.figures import SupplyFigures
-from service.api.schemas import Diagnosis
-from service.client.examined import rotor_words, sideband_words, supply_words
+from service.api.recordings.diagnosis_schemas import Diagnosis
+from service.client.rotor_and_supply import rotor_words, sideband_words, supply_words
 
 
 @dataclass(frozen=True, slots=True)

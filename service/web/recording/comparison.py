@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from core.signals.terminals import PHASES
 from service.api.context import ApiContext
-from service.api.schemas import Diagnosis
+from service.api.recordings.diagnosis_schemas import Diagnosis
 from service.storage.errors import NotFoundError
 from service.storage.records import RecordingEntry
 from service.waveforms.opened import Opened

@@ -10,7 +10,7 @@ from markupsafe import Markup
 
 from core.recordings.errors import RecordingError, RecordingTooLongError
 from service.api.context import ApiContext
-from service.api.schemas import Diagnosis
+from service.api.recordings.diagnosis_schemas import Diagnosis
 from service.pictures.looks import PAGE
 from service.pictures.phasors import Phasor, phasor_picture
 from service.recording_store.store import RecordingStoreError

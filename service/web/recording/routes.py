@@ -15,9 +15,9 @@ from service.api.access.requirements import require
 from service.api.pages import decode, encode
 from service.api.problems import ProblemError, WrongFieldError
 from service.api.recordings.diagnoses import queue_diagnosis
+from service.api.recordings.diagnosis_schemas import DiagnosisRequest
 from service.api.recordings.routes import FORM_LIMITS, store_upload
 from service.api.samples.opening import in_turn
-from service.api.schemas import DiagnosisRequest
 from service.storage.states import RecordingState
 from service.web.addresses import address
 from service.web.choices import motor_names

@@ -3,7 +3,7 @@
 from typing import Final
 
 from core.diagnosis.verdict import Verdict
-from service.api.schemas import Diagnosis
+from service.api.recordings.diagnosis_schemas import Diagnosis
 from service.storage.records import RecordingEntry
 from service.storage.states import RecordingState
 from service.web.words import interval, percent

@@ -7,8 +7,8 @@ from typing import Final
 from markupsafe import Markup
 
 from core.starts.compared import StartChanges
-from service.api.compared_starts import LATEST, reference_of, within_hour
 from service.api.pages import decode, encode
+from service.api.starts.comparison import LATEST, reference_of, within_hour
 from service.pictures.looks import PAGE, Look
 from service.pictures.starts import StartLine, starts_picture
 from service.storage import Repository

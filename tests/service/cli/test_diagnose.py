@@ -19,8 +19,8 @@ from service.cli.output import results
 from service.cli.recordings.diagnose import _table
 from testing.machines.motors import REFERENCE
 from testing.machines.phase_circuits import Fault, recording, running
-from testing.service.examined import SHORT_RECORD
 from testing.service.plants import undiagnosable
+from testing.service.rotor_and_supply import SHORT_RECORD
 
 CLIPPED = "IA reads its full scale in 12 samples"
 

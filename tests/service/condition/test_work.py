@@ -22,7 +22,7 @@ from core.machines.parameters import Motor, ParametersSource
 from core.recordings.comtrade.writer import write
 from core.time_stamps import nanoseconds
 from service.alarms.condition_rules import ConditionRules
-from service.api.condition_documents import condition_document
+from service.api.conditions.documents import condition_document
 from service.condition import work, worker
 from service.condition.work import ConditionWork
 from service.condition.worker import FoldTask, ObserveTask, fold_due

@@ -8,8 +8,8 @@ from pathlib import Path
 
 from service.jobs import Diagnosed, DiagnosisTask, Outcome, Rejected
 from service.jobs.worker_process import follow_service
-from testing.service.examined import BROKEN_ROTOR, SUPPLY
 from testing.service.plants import NOW_NS, SECOND_NS, fault
+from testing.service.rotor_and_supply import BROKEN_ROTOR, SUPPLY
 from testing.waiting import wait_until
 
 GO = "STAND_IN_GO"

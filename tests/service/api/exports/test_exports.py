@@ -23,9 +23,9 @@ from service.storage.states import AlarmKind
 from testing.no_room import no_room
 from testing.service.conditions import FAULT, tell
 from testing.service.diagnosed import add_diagnosed
-from testing.service.examined import BROKEN_ROTOR, SUPPLY, ExaminedRecordings
 from testing.service.observations import observation
 from testing.service.plants import NOW_NS, SECOND_NS, fault, undiagnosable
+from testing.service.rotor_and_supply import BROKEN_ROTOR, SUPPLY, ExaminedRecordings
 from tests.service.api.serving import serving
 
 XLSX = "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet"

@@ -9,8 +9,8 @@ from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from service.storage.records import Actor, Alarm
 from service.storage.states import AlarmKind, AlarmState
-from testing.service.examined import BROKEN_ROTOR, SHORT_RECORD, SOUND_ROTOR, ExaminedRecordings
 from testing.service.plants import NOW_NS, two_motor_plant
+from testing.service.rotor_and_supply import BROKEN_ROTOR, SHORT_RECORD, SOUND_ROTOR, ExaminedRecordings
 
 UNEVEN = replace(BROKEN_ROTOR, state=RotorState.WATCH, severity_dB=-38.0, severity_dB_ci95=(-40.0, -36.0))
 ADA = Actor("ada", "::1")

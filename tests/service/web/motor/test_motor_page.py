@@ -15,7 +15,7 @@ from core.condition.events import Event, EventKind
 from core.condition.kinds import Kind, State
 from core.condition.verdict.condition import Condition as Judged
 from core.units import NANOSECONDS_PER_DAY, NANOSECONDS_PER_SECOND
-from service.api.condition_schemas import Condition
+from service.api.conditions.schemas import Condition
 from service.condition.wording import KINDS, finding
 from service.plant import MeteredQuantity
 from service.recording_store.store import RecordingStore

@@ -11,7 +11,13 @@ from lxml import html
 from core.rotor.finding import RotorState
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
-from testing.service.examined import BROKEN_ROTOR, SHORT_RECORD, SOUND_ROTOR, SUPPLY, ExaminedRecordings
+from testing.service.rotor_and_supply import (
+    BROKEN_ROTOR,
+    SHORT_RECORD,
+    SOUND_ROTOR,
+    SUPPLY,
+    ExaminedRecordings,
+)
 from tests.service.web.motor.recorded import MOTOR, know
 from tests.service.web.pages import page, words
 

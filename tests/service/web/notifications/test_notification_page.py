@@ -14,8 +14,8 @@ from service.storage.records import Role
 from service.storage.states import NotificationState
 from service.web.app import create_site
 from testing.service.accounts import token_of
+from tests.service.api.notifications.test_notifications import CHANNELS, told_alarm
 from tests.service.api.serving import serving
-from tests.service.api.test_notifications import CHANNELS, told_alarm
 from tests.service.web.pages import HOSTILE, addresses, page, words
 
 ROUTES = [

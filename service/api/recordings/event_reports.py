@@ -14,7 +14,7 @@ from service.api.context import Context, path_to
 from service.api.document import Name
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
-from service.api.schemas import EventReport
+from service.api.recordings.schemas import EventReport
 
 router = APIRouter(tags=["event reports"])
 

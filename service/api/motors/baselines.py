@@ -11,8 +11,8 @@ from service.api.access.callers import By
 from service.api.access.requirements import require
 from service.api.context import Context
 from service.api.document import Name, Person, Reason
+from service.api.motors.schemas import Baseline, BaselineRequest
 from service.api.problems import problems
-from service.api.schemas import Baseline, BaselineRequest
 
 router = APIRouter(prefix="/motors/{name}/baseline", tags=["condition"])
 

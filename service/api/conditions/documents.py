@@ -7,7 +7,7 @@ from core.condition.verdict.advice import advice
 from core.condition.verdict.latest_record import why_milder
 from core.machines.parameters import ParametersSource
 from core.machines.typical import TYPICAL_REASON
-from service.api.condition_schemas import Condition, ConditionReference
+from service.api.conditions.schemas import Condition, ConditionReference
 from service.storage.records import ConditionEntry, LatestDiagnosis
 
 NOT_JUDGED = "no valid record of the motor has been judged yet"

@@ -2,8 +2,8 @@
 
 from dataclasses import replace
 
-from service.client.examined import rotor_words, sideband_words, supply_words
-from testing.service.examined import BROKEN_ROTOR, SHORT_RECORD, SUPPLY
+from service.client.rotor_and_supply import rotor_words, sideband_words, supply_words
+from testing.service.rotor_and_supply import BROKEN_ROTOR, SHORT_RECORD, SUPPLY
 
 
 def test_a_rotor_is_told_with_what_would_be_seen() -> None:

@@ -8,8 +8,14 @@ from service.recording_store.store import RecordingStore
 from service.storage import NotFoundError, Repository
 from service.storage.records import Actor
 from service.storage.states import DeletedBy
-from testing.service.examined import BROKEN_ROTOR, SHORT_RECORD, SOUND_ROTOR, SUPPLY, ExaminedRecordings
 from testing.service.plants import NOW_NS, SECOND_NS, undiagnosable
+from testing.service.rotor_and_supply import (
+    BROKEN_ROTOR,
+    SHORT_RECORD,
+    SOUND_ROTOR,
+    SUPPLY,
+    ExaminedRecordings,
+)
 
 PERSON = Actor("ada", "tests")
 AT_REST = replace(

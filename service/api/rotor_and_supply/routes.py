@@ -9,9 +9,9 @@ from service.alarms.rotor_rules import rotor_advice
 from service.api.access.requirements import require
 from service.api.context import Context
 from service.api.document import Name
-from service.api.examined_schemas import RotorCondition, RotorTrendPoint, SupplyTrendPoint
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
+from service.api.rotor_and_supply.schemas import RotorCondition, RotorTrendPoint, SupplyTrendPoint
 from service.api.times import TimeParameter
 from service.storage.records import RotorEntry, SupplyEntry
 

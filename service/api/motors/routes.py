@@ -11,24 +11,16 @@ from core.machines.parameters import ParametersSource
 from core.operation import Operation
 from service.access.permissions import Permission
 from service.api.access.requirements import require
-from service.api.condition_documents import condition_document
+from service.api.conditions.documents import condition_document
 from service.api.context import Context
 from service.api.document import Name
 from service.api.exports.answers import FILES, ListAnswer
-from service.api.operations import offer
+from service.api.motors.commissioning import offer
+from service.api.motors.schemas import Health, ListedMotor, Motor, RecordedStarts, Site, TrendPoint
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
 from service.api.recordings.listed import listed
-from service.api.schemas import (
-    Health,
-    ListedMotor,
-    ListedRecording,
-    Motor,
-    RecordedStarts,
-    Recording,
-    Site,
-    TrendPoint,
-)
+from service.api.recordings.schemas import ListedRecording, Recording
 from service.api.times import TimeParameter, rfc3339
 from service.condition.staleness import stale_after_ns
 from service.configuration.settings import Settings

@@ -9,7 +9,7 @@ from service.access.permissions import Permission
 from service.api.access.requirements import require
 from service.api.context import Context
 from service.api.document import Name
-from service.api.load_schemas import LoadProfile, load_document
+from service.api.load.schemas import LoadProfile, load_document
 from service.api.problems import problems
 from service.condition.metered_load import motor_load
 from service.condition.motor_data import motor_known

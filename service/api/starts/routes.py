@@ -7,12 +7,12 @@ from fastapi import APIRouter
 
 from service.access.permissions import Permission
 from service.api.access.requirements import require
-from service.api.compared_starts import Reference, reference_of, within_hour
 from service.api.context import Context
 from service.api.document import Name
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
-from service.api.start_schemas import StartDetails, StartSummary
+from service.api.starts.comparison import Reference, reference_of, within_hour
+from service.api.starts.schemas import StartDetails, StartSummary
 from service.storage.records import StartEntry
 
 router = APIRouter(prefix="/motors/{name}/starts", tags=["motors"])

@@ -8,8 +8,14 @@ import pytest
 from core.time_stamps import rfc3339
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
-from testing.service.examined import BROKEN_ROTOR, SHORT_RECORD, SOUND_ROTOR, SUPPLY, ExaminedRecordings
 from testing.service.plants import NOW_NS, SECOND_NS
+from testing.service.rotor_and_supply import (
+    BROKEN_ROTOR,
+    SHORT_RECORD,
+    SOUND_ROTOR,
+    SUPPLY,
+    ExaminedRecordings,
+)
 
 MOTOR = "/api/v1/motors/PUMP-A1"
 SHOWN = {"rotor": BROKEN_ROTOR.as_dict(), "supply": SUPPLY.as_dict()}

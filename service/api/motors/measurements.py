@@ -1,24 +1,45 @@
 """What the relays measure all the time, over time."""
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from fastapi import APIRouter, Query
 from fastapi.responses import StreamingResponse
+from pydantic import Field, create_model
 
 from service.access.permissions import Permission
 from service.api.access.requirements import require
 from service.api.context import Context
-from service.api.document import Name
+from service.api.document import Document, Name
 from service.api.exports.answers import FILES, ListAnswer
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
-from service.api.schemas import Measurement
-from service.api.times import TimeParameter
+from service.api.times import Time, TimeParameter
 from service.exports import measurements as table
-from service.plant import AveragingStep
+from service.plant import AveragingStep, MeteredQuantity
 from service.storage.records import Measurement as StoredMeasurement
 
 router = APIRouter(tags=["condition"])
+
+
+class MeasurementTime(Document):
+    """When it was measured: at `time`, or `samples` times from then on."""
+
+    time: Time = Field(validation_alias="time_ns")
+    samples: int
+
+
+if TYPE_CHECKING:
+    _Measurement = MeasurementTime
+else:
+    _Measurement = create_model(
+        "_Measurement",
+        __base__=MeasurementTime,
+        **{quantity.value: (float | None, ...) for quantity in MeteredQuantity},
+    )
+
+
+class Measurement(_Measurement):
+    """What the relay measured: at `time`, or means of `samples` values from then on."""
 
 
 @router.get(

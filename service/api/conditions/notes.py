@@ -1,37 +1,23 @@
-"""The conditions of motors over time, their history, and what people tell of motors."""
+"""Notes: what people tell of a motor, and that it counts as healthy as it is."""
 
 import time
 from http import HTTPStatus
-from typing import Annotated
 from uuid import UUID
 
-from fastapi import APIRouter, Query, Request, Response
+from fastapi import APIRouter, Request, Response
 
 from core.condition.events import Event, EventKind
 from core.units import NANOSECONDS_PER_DAY
 from service.access.permissions import Permission
 from service.api.access.callers import Asking, By
 from service.api.access.requirements import require
-from service.api.condition_documents import condition_document
-from service.api.condition_schemas import (
-    ConditionChange,
-    ConditionDetails,
-    ConditionPoint,
-    Note,
-    NoteRequest,
-    RestartRequest,
-    Withdrawal,
-)
+from service.api.conditions.schemas import Note, NoteRequest, RestartRequest, Withdrawal
 from service.api.context import ApiContext, Context, path_to
 from service.api.document import Name
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import WrongFieldError, problems
 from service.api.times import rfc3339
-from service.condition.staleness import stale_after_ns
 from service.storage.records import Actor
-
-LATEST_POINTS = 20
-MOST_POINTS = 100
 
 FURTHEST_AHEAD_NS = NANOSECONDS_PER_DAY
 """No note lies further in the future. Clocks of relays, which order the records, may be hours ahead."""
@@ -41,36 +27,6 @@ _MADE: dict[int | str, dict[str, object]] = {
 }
 
 router = APIRouter(prefix="/motors/{name}", tags=["condition"])
-
-
-@router.get("/condition", responses=problems(404), dependencies=[require(Permission.VIEW)])
-def get_condition(
-    context: Context,
-    name: Name,
-    history: Annotated[
-        int, Query(ge=0, le=MOST_POINTS, description="With so many of the latest records.")
-    ] = LATEST_POINTS,
-) -> ConditionDetails:
-    """Return the condition of a motor over time, with what was said from each of its latest records on."""
-    now_ns = time.time_ns()
-    health = context.repository.health(name)
-    oldest_ns = stale_after_ns(health.motor.schedule, context.settings.stale_after_days)
-    condition = condition_document(
-        health.condition, now_ns, oldest_ns, health.diagnosis, source=health.motor.parameters_source
-    )
-    points = context.repository.latest_condition_points(name, limit=history)
-    return ConditionDetails(
-        **dict(condition), history=[ConditionPoint.model_validate(point) for point in points]
-    )
-
-
-@router.get("/condition/history", responses=problems(404), dependencies=[require(Permission.VIEW)])
-def list_condition_history(
-    context: Context, name: Name, limit: Limit = DEFAULT_LIMIT, cursor: CursorText = None
-) -> Page[ConditionChange]:
-    """Return the changes of a motor's condition with what caused each, latest first."""
-    changes = context.repository.condition_history(name, limit=limit, after=decode(cursor, int, str))
-    return page(changes, ConditionChange.model_validate)
 
 
 @router.get("/notes", responses=problems(404), dependencies=[require(Permission.VIEW)])

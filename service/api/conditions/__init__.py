@@ -1,0 +1,1 @@
+"""The conditions of motors over time, and what people tell of motors."""

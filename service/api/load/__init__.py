@@ -1,0 +1,1 @@
+"""How motors were loaded, by what their relays meter."""

@@ -1,0 +1,137 @@
+"""Documents of sites and motors. Fields that are null are not known (yet)."""
+
+from typing import Annotated, Literal
+from uuid import UUID
+
+from pydantic import FailFast, Field
+
+from core.condition.kinds import Kind, State
+from core.diagnosis.verdict import Verdict
+from core.machines.parameters import ParametersSource
+from service.api.conditions.schemas import Condition
+from service.api.document import Document, Listed, Person, Reason, RequestDocument
+from service.api.recordings.schemas import Recording
+from service.api.times import Time
+from service.storage.states import LinkState
+
+
+class Site(Document):
+    name: str
+    description: str
+
+
+class Motor(Document):
+    """A motor; `schedule`, a cron expression in UTC, says when it is recorded without anybody asking.
+
+    parameters_source: where its parameters come from: given in the motors file, commissioned from a recorded
+    start, from a data sheet, or typical of its rating. With typical ones the motor is on watch at most.
+    """
+
+    name: str
+    description: str
+    site: str
+    ied: str
+    schedule: str | None
+    parameters_source: ParametersSource
+
+
+class RecordedStarts(Document):
+    """The starts of a motor from which its parameters can be estimated: how many, and the latest one's time.
+
+    advice: the command that does it; null where the motor's parameters were estimated already.
+    """
+
+    number: int
+    latest_time: Time = Field(validation_alias="latest_ns")
+    advice: str | None
+
+
+class Health(Document):
+    """What is known of a motor now: its condition, the diagnosis of its latest recording, its relay's link.
+
+    What is said of verdict, level, phase, load and reasons beside the condition repeats the diagnosis; null
+    and empty before the first one. Recordings in which the motor stands, starts, stops or trips say nothing
+    of it, and are told by last_recording alone. starts: those among them that its parameters follow from.
+    stood_time: when the motor was last seen to stand still.
+    """
+
+    motor: str
+    site: str
+    ied: str
+    condition: Condition
+    parameters_source: ParametersSource
+    verdict: Verdict | None
+    mu_f: float | None
+    mu_f_ci95: tuple[float, float] | None
+    mu_f_scatter95: tuple[float, float] | None
+    detection_limit: float | None
+    phase: Literal["a", "b", "c"] | None
+    load_level: float | None
+    load_level_ci95: tuple[float, float] | None
+    reasons: Listed[str]
+    recording_id: str | None
+    recorded_time: Time | None
+    link_state: LinkState
+    link_reason: str | None
+    last_success_time: Time | None
+    last_recording: Recording | None
+    starts: RecordedStarts | None
+    stood_time: Time | None
+
+
+class ListedMotor(Motor):
+    """A motor in a list, with its health where that was asked for."""
+
+    health: Health | None = None
+
+
+class TrendPoint(Document):
+    """One recording's figure; `value` is null where the recording does not tell it.
+
+    ci95: 95 % interval from noise, sensors and parameters, of all but theta_f. Of mu_f only: scatter95, from
+    the record's own scatter alone; detection_limit, the level that nine of ten such recordings show.
+    verdict: of the recording alone; null, and replaced by state, kind and phase, where the figure is one of
+    the motor's condition from that recording on.
+    """
+
+    time: Time = Field(validation_alias="recorded_ns")
+    value: float | None
+    ci95: tuple[float, float] | None
+    scatter95: tuple[float, float] | None
+    detection_limit: float | None
+    verdict: Verdict | None
+    recording_id: str
+    state: State | None = None
+    kind: Kind | None = None
+    phase: Literal["a", "b", "c"] | None = None
+
+
+class BaselineRequest(RequestDocument):
+    """The recordings that stand for a motor's healthy condition.
+
+    reason, by: why they do, and who says so; needed where a recording is in doubt.
+    """
+
+    recording_ids: Annotated[set[UUID], Field(min_length=3, max_length=100), FailFast()]
+    reason: Reason | None = None
+    by: Person | None = None
+
+
+class BaselineDoubt(Document):
+    """What spoke against a recording as one of a healthy motor when it was chosen."""
+
+    recording_id: str
+    doubt: str
+
+
+class Baseline(Document):
+    """The motor's healthy recordings; empty where it has no baseline.
+
+    When they were chosen, why and by whom, where that was said, and which of them were in doubt.
+    """
+
+    recordings: Listed[Recording]
+    chosen_time: Time | None = Field(validation_alias="chosen_ns")
+    reason: str | None
+    by: str | None
+    doubts: Listed[BaselineDoubt]

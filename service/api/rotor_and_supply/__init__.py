@@ -1,0 +1,1 @@
+"""What recordings show of rotor and supply, over time."""

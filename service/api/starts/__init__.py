@@ -1,0 +1,1 @@
+"""The recorded starts of motors, each beside the first ones."""
