@@ -6,8 +6,9 @@ from concurrent.futures import Executor
 from statistics import median
 
 from benchmarks.reporting import Section, mark, rate_text, spread, table
-from benchmarks.rotor.cases import LOAD_SWINGS, MOTORS, Result, Subject, examined
+from benchmarks.rotor.cases import BARS, LOAD_SWINGS, MOTORS, Result, Subject, examined
 from core.rotor.finding import RotorState
+from testing.machines.rotor_records import RotorCase
 
 LOADS = (0.25, 0.5, 0.75, 1.0)
 MOST_BARS = 3
@@ -31,6 +32,7 @@ def sections(pool: Executor, *, quick: bool) -> list[Section]:
         ]
         results = [one for many in spread(examined, subjects, f"{duration_s:g} s", pool) for one in many]
         lines += _table(duration_s, results)
+        lines += _coverage(results)
         if duration_s == LENGTHS_S[0]:
             lines += _goal(results)
     command = "python -m benchmarks.rotor --subject detection"
@@ -67,6 +69,26 @@ def _cell(results: Sequence[Result]) -> str:
         if one.finding is not None and one.finding.severity_dB is not None
     ]
     return f"{shares}, {median(levels):.1f} dB" if levels else shares
+
+
+def _coverage(results: Sequence[Result]) -> list[str]:
+    """How often the interval holds the asymmetry of the simulated cage's resistances."""
+    errors_dB, held = [], 0
+    for one in results:
+        subject, finding = one.subject, one.finding
+        if not subject.broken_bars or finding is None or finding.severity_dB_ci95 is None:
+            continue
+        motor = MOTORS[subject.motor]
+        true_dB = RotorCase(motor, broken_share=subject.broken_bars / BARS).asymmetry_dB
+        low, high = finding.severity_dB_ci95
+        held += low <= true_dB <= high
+        errors_dB.append((finding.severity_dB or 0.0) - true_dB)
+    rate, ends = rate_text(held, len(errors_dB)), f"{min(errors_dB):+.1f} to {max(errors_dB):+.1f} dB"
+    return [
+        f"With bars broken, the 95 % interval holds the true asymmetry in {rate}; the severity is off by "
+        f"{median(errors_dB):+.1f} dB in the middle, {ends} at most.",
+        "",
+    ]
 
 
 def _goal(results: Sequence[Result]) -> list[str]:

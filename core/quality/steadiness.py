@@ -10,6 +10,7 @@ from core.quality.circle_diagram import CircleDiagram
 from core.quality.currents import Currents
 from core.quality.finding import QualityFinding, finding
 from core.quality.supply import Feed
+from core.quality.swing import without_swing
 from core.signals.clarke import clarke
 from core.signals.sequence import PhaseSequence, SequencePhasors
 from core.signals.terminals import Terminals
@@ -17,6 +18,9 @@ from core.signals.terminals import Terminals
 UNSTEADY_CURRENT = 0.18
 """Farthest that the forward current goes from its mean, of rated: a load that swings by 10 % of the rated
 torque moves it by 0.13 at most, a third of the rated load switched by as much as the limit."""
+LARGEST_SWING = 0.36
+"""The same with a regular swing in it: broken bars beside a load that swings by 10 % of the rated torque
+reach 0.25."""
 UNSTEADY_VOLTAGE = 0.1
 """The same limit of the voltage, as a share of its mean: dips, switching, and cycles lost from the record."""
 
@@ -51,7 +55,11 @@ def steadiness(
     if volts > UNSTEADY_VOLTAGE:
         return
     course = _course(clarke(terminals.current_abc), currents.phasors, per_cycle)
-    amps = _farthest(np.abs(course) if feed.assumed else course) * currents.strong / circle.rated_current_A
+    seen = np.abs(course) if feed.assumed else course
+    of_rated = currents.strong / circle.rated_current_A
+    amps = _farthest(seen) * of_rated
+    if UNSTEADY_CURRENT < amps <= LARGEST_SWING:
+        amps = _farthest(without_swing(seen, 1.0 / terminals.sample_rate_hz, feed.frequency_hz)) * of_rated
     yield finding(
         "steadiness", amps, UNSTEADY_CURRENT, "of rated", passed=amps <= UNSTEADY_CURRENT,
         message=f"the current moves by {amps:.0%} of the rated one within the record: the load changes, or "

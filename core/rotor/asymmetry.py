@@ -1,6 +1,7 @@
 """The rotor's asymmetry in one record: where its line stands, how large it is, and how sure that is."""
 
 from dataclasses import dataclass
+from functools import partial
 from math import ceil, floor, hypot, log, pi, sqrt
 
 import numpy as np
@@ -9,6 +10,7 @@ from core.machines.base import Array
 from core.machines.parameters import Motor
 from core.machines.steady_state import ComplexArray
 from core.rotor.baseband import Baseband
+from core.rotor.cage_leakage import LEAST, MOST, without_leakage
 from core.rotor.rotor_circuit import RotorLines, rotor_lines
 from core.rotor.running_point import errors, running_point
 from core.rotor.sidebands import Lines, fit_lines, without_lines
@@ -45,7 +47,7 @@ class Asymmetry:
     value : float
         Half the difference of the resistances of the cage's axes, over R_r.
     interval : tuple of float
-        Its 95 % interval from noise and parameters; it may begin below zero.
+        Its 95 % interval from noise, parameters and the cage's leakage; it may begin below zero.
     threshold : float
         Value from which on it is neither noise nor a wrongly removed ripple of the speed.
     detection_limit : float
@@ -173,10 +175,18 @@ def _measured(record: _Record, line: Lines, kappa: Array) -> Asymmetry:
     radial = sqrt((noise + leak**2) / 2.0)
     spread = NORMAL_95 * hypot(radial, scale)
     current = abs(baseband.current.mean())
+    resistive = partial(
+        without_leakage,
+        slip_over_resistance=running_point(baseband, record.motor).slip_over_resistance,
+        magnetising_inductance_H=record.motor.parameters.magnetising_inductance_H,
+    )
     return Asymmetry(
         ratio=float(kappa[0]),
-        value=abs(value),
-        interval=(abs(value) - spread, abs(value) + spread),
+        value=resistive(abs(value)),
+        interval=(
+            resistive(abs(value) - spread, factor=MOST),
+            resistive(abs(value) + spread, factor=LEAST),
+        ),
         threshold=threshold,
         detection_limit=threshold + NINE_IN_TEN * radial,
         leak=NORMAL_95 * leak,

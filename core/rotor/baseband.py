@@ -17,6 +17,7 @@ from core.machines.steady_state import ComplexArray
 from core.machines.winding_frame import to_winding_frame
 from core.quality.circle_diagram import circle_diagram
 from core.quality.steadiness import UNSTEADY_CURRENT, UNSTEADY_VOLTAGE
+from core.quality.swing import without_swing
 from core.rotor.spikes import without_spikes
 from core.signals.clarke import clarke
 from core.signals.terminals import terminals
@@ -188,12 +189,13 @@ def _steady_end(whole: Baseband, accepted: Accepted) -> Baseband:
     end = whole.time_s > whole.time_s[-1] - REFERENCE_S
     circle = circle_diagram(case.motor, case.frequency_hz)
     rated_A = np.sqrt(3.0) * circle.rated_current_A / case.line_per_winding_current
-    moved = np.abs(np.abs(whole.current) - np.abs(whole.current[end]).mean()) > UNSTEADY_CURRENT * rated_A
+    step_s = float(whole.time_s[1] - whole.time_s[0])
+    drawn = without_swing(np.abs(whole.current), step_s, case.frequency_hz).real
+    moved = np.abs(drawn - drawn[end].mean()) > UNSTEADY_CURRENT * rated_A
     volts = np.abs(whole.voltage)
     moved |= np.abs(volts - volts[end].mean()) > UNSTEADY_VOLTAGE * volts[end].mean()
     first = int(np.flatnonzero(moved & ~end)[-1]) + 1 if (moved & ~end).any() else 0
     # The means of a cycle before and after a change hold a part of it.
-    step_s = float(whole.time_s[1] - whole.time_s[0])
     first = first and first + ceil(whole.cycle_s / step_s)
     time_s = whole.time_s[first:]
     return replace(
