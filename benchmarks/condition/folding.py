@@ -29,7 +29,7 @@ from service.configuration.settings import sqlite_url
 from service.plant import Plant, PlantMotor, Site
 from service.storage import Repository, connect, migrate
 from service.storage.models import Base
-from service.storage.repository.observations import observation_row
+from service.storage.repository.conditions.observations import observation_row
 from testing.service.plants import NOW_NS, relay
 from testing.service.postgresql import binaries, serving_postgresql
 

@@ -13,8 +13,8 @@ from service.retention.batches import Batches
 from service.retention.row_sizes import ROW_BYTES
 from service.storage.records import SERVICE, Actor, Amount, AppliedRule, DeletedRows, OldRecording
 from service.storage.repository import Repository
-from service.storage.repository.kept_recordings import Keeping
-from service.storage.repository.retention import NOTHING, ExpiredRecordings
+from service.storage.repository.recordings.kept_recordings import Keeping
+from service.storage.repository.recordings.retention import NOTHING, ExpiredRecordings
 from service.storage.states import RecordingState
 
 FIRST_RECORDINGS = 1

@@ -2,8 +2,8 @@
 
 A service that is killed after it has stored a record's files, and before it has written the row, leaves such
 a folder. So does whoever copies one there. A record that arrives is left alone for an hour. Whoever adds its
-row holds the folder's lock and looks whether the folder is there (repository/folders.py); whoever moves the
-folder holds the same lock. So no recording loses its files, whatever the clocks say.
+row holds the folder's lock (repository/recordings/folders.py) and looks whether the folder is there; whoever
+moves the folder holds the same lock. So no recording loses its files, whatever the clocks say.
 """
 
 from dataclasses import dataclass

@@ -32,7 +32,7 @@ from service.recording_store.store import WAVEFORM_SUFFIXES, RecordingStoreError
 from service.retention.deletion import remove_discarded_folder_if_possible
 from service.storage.errors import FolderGoneError, TooManyWaitingError
 from service.storage.records import Actor, RecordingEntry
-from service.storage.repository.recordings import AddedRecording
+from service.storage.repository.recordings.recordings import AddedRecording
 from service.storage.states import RecordingState
 
 router = APIRouter(tags=["recordings"])

@@ -29,7 +29,7 @@ from service.storage.records import (
     TrendPoint,
     interval_of,
 )
-from service.storage.repository.conditions import conditions_of
+from service.storage.repository.conditions.conditions import conditions_of
 from service.storage.repository.overviews.fleet import latest_figures_of
 from service.storage.repository.sessions import Order, Sessions, columns_of, found, page_of, record_of
 from service.storage.states import RecordingState

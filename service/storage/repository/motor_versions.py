@@ -14,7 +14,7 @@ from service.storage.models import ConditionEventRow, ConditionRow, MotorVersion
 from service.storage.records import SERVICE, MotorVersion
 from service.storage.repository.audit.entries import note_change
 from service.storage.repository.audit.values import changed
-from service.storage.repository.fold_marks import EARLIEST_NS, mark
+from service.storage.repository.conditions.fold_marks import EARLIEST_NS, mark
 from service.storage.repository.sessions import Sessions, found, record_of
 
 MACHINE = ("nameplate", "parameters", "tolerances")

@@ -9,8 +9,8 @@ from service.storage.engine import one_at_a_time
 from service.storage.models import ConditionRow, IedRow, MotorRow, SiteRow, UnobservedRecordingRow
 from service.storage.records import SERVICE, ClockReading, Cursor, IedEntry, MotorEntry, Page, SiteEntry
 from service.storage.repository.audit.plant_changes import note_plant_changes, plant_in_service
-from service.storage.repository.conditions import new_condition
-from service.storage.repository.fold_marks import EARLIEST_NS, mark
+from service.storage.repository.conditions.conditions import new_condition
+from service.storage.repository.conditions.fold_marks import EARLIEST_NS, mark
 from service.storage.repository.sessions import Sessions, columns_of, found, page_of, record_of
 from service.storage.states import LinkState
 

@@ -27,7 +27,7 @@ from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect
 from service.storage.models import ConditionCheckpointRow, MotorVersionRow
 from service.storage.records import SERVICE, FoldInput, FoldResult
-from service.storage.repository.folding import FoldingRows
+from service.storage.repository.conditions.folding import FoldingRows
 from testing.service.following import FAN, PUMP, Recorder, fold_all, note_motors, on_one_bus
 from testing.service.observations import records_of_a_motor
 from testing.service.plants import NOW_NS, SECOND_NS, motor

@@ -17,7 +17,7 @@ from service.configuration.settings import Settings
 from service.retention.batches import Batches, Pace
 from service.storage import Repository, connect
 from service.storage.records import DeletedRows
-from service.storage.repository.leases import Share
+from service.storage.repository.relays.leases import Share
 from service.timing.wall_clock import SETTLING_S
 from testing.service.plants import NOW_NS, SECOND_NS
 

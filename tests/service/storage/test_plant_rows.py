@@ -8,7 +8,7 @@ from service.plant import Bus, Schedule
 from service.storage import NotFoundError, Repository
 from service.storage.models import AlarmRow, LinkChangeRow
 from service.storage.repository.alarms.causes import MOST_CLEARED
-from service.storage.repository.links import MOST_CHANGES
+from service.storage.repository.relays.links import MOST_CHANGES
 from service.storage.states import AlarmKind, AlarmPriority, AlarmState, LinkState
 from testing.service.plants import NOW_NS, two_motor_plant
 

@@ -12,7 +12,7 @@ from sqlalchemy import Engine
 from service.recording_store.store import RecordingStore, StoredRecording
 from service.storage import Repository, connect, migrate
 from service.storage.records import RemoteRecord
-from service.storage.repository.recordings import AddedRecording
+from service.storage.repository.recordings.recordings import AddedRecording
 from service.storage.states import AlarmKind
 from testing.service.plants import NOW_NS, two_motor_plant
 from testing.service.postgresql import PostgresServer

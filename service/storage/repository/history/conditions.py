@@ -8,7 +8,7 @@ from sqlalchemy.orm import aliased
 
 from service.storage.models import ConditionChangeRow, MotorRow, ObservationRow
 from service.storage.records import ConditionChange, ConditionPoint
-from service.storage.repository.observations import point
+from service.storage.repository.conditions.observations import point
 from service.storage.repository.sessions import Sessions, columns_of
 
 

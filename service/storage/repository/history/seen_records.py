@@ -11,7 +11,7 @@ from service.plant import AveragingStep, MeteredQuantity
 from service.storage.models import MeasurementRow, ObservationRow, RecordingRow
 from service.storage.records import ConditionFigures, RecordingEntry
 from service.storage.records.history import SeenRecord
-from service.storage.repository.observations import OBSERVED, record_observation
+from service.storage.repository.conditions.observations import OBSERVED, record_observation
 from service.storage.repository.sessions import Sessions, columns_of
 
 _FIGURES = [field.name for field in fields(ConditionFigures)]

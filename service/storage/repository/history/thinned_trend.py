@@ -9,7 +9,7 @@ from core.condition.kinds import State
 from service.storage.models import MotorRow, ObservationRow
 from service.storage.records import ConditionPoint
 from service.storage.records.history import ThinnedTrend, TrendPiece
-from service.storage.repository.observations import point
+from service.storage.repository.conditions.observations import point
 from service.storage.repository.sessions import Sessions, columns_of, found, has_as_many
 
 MOST_POINTS: Final = 1000

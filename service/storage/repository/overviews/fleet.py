@@ -8,7 +8,7 @@ from sqlalchemy.orm import Session, aliased
 from service.storage.models import AlarmRow, DiagnosisRow, IedRow, MotorRow
 from service.storage.models.alarms import in_state
 from service.storage.records import CallingAlarms, FleetMotor, LatestFigures, MotorEntry
-from service.storage.repository.conditions import conditions_of
+from service.storage.repository.conditions.conditions import conditions_of
 from service.storage.repository.sessions import Sessions, columns_of
 from service.storage.states import AlarmState
 

@@ -9,7 +9,7 @@ from service.plant import AveragingStep, MeteredQuantity
 from service.storage.models import MeasurementRow, MotorRow, MotorVersionRow
 from service.storage.records import Cursor, MotorEntry, Page, Sample
 from service.storage.records.overviews import MotorOverview
-from service.storage.repository.fold_marks import EARLIEST_NS
+from service.storage.repository.conditions.fold_marks import EARLIEST_NS
 from service.storage.repository.sessions import Sessions, columns_of, page_of
 
 

@@ -16,7 +16,7 @@ from service.api.limits.arrivals import ARRIVING_AT_ONCE
 from service.recording_store.store import RecordingStore, StoredRecording
 from service.storage import Repository
 from service.storage.errors import FolderGoneError
-from service.storage.repository.recordings import AddedRecording
+from service.storage.repository.recordings.recordings import AddedRecording
 from testing.service.small_record import CFG, DAT
 from testing.waiting import wait_until
 from tests.service.api.serving import serving

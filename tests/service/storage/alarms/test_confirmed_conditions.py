@@ -17,7 +17,7 @@ from service.storage.models import MotorRow, ObservationRow
 from service.storage.records import Actor, Alarm
 from service.storage.records.actors import SERVICE
 from service.storage.repository.alarms.conditions import settle_alarm
-from service.storage.repository.observations import keep_observation
+from service.storage.repository.conditions.observations import keep_observation
 from service.storage.states import AlarmEvent, AlarmState
 from testing.service.conditions import DRIFTING, FAULT, HEALTHY, UNKNOWN, entry_of
 from testing.service.observations import HOUR_NS, observation

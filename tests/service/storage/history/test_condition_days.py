@@ -14,7 +14,7 @@ from service.storage.states import DeletedBy
 from testing.service.following import PUMP, Recorder
 from testing.service.observations import observation
 from testing.service.plants import NOW_NS
-from tests.service.storage.test_condition_rows import began, nothing_more
+from tests.service.storage.conditions.test_condition_rows import began, nothing_more
 
 TODAY_NS = NOW_NS - NOW_NS % NANOSECONDS_PER_DAY
 TOMORROW_NS = TODAY_NS + NANOSECONDS_PER_DAY

@@ -8,7 +8,7 @@ from sqlalchemy.orm import Session
 from core.condition.kinds import Kind, State
 from service.storage import NotFoundError, Repository
 from service.storage.records.history import TrendPiece
-from service.storage.repository.observations import observation_row
+from service.storage.repository.conditions.observations import observation_row
 from testing.service.observations import HOUR_NS, observation
 from testing.service.plants import NOW_NS
 

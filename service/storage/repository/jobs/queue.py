@@ -26,15 +26,15 @@ from service.storage.models import DiagnosisRow, JobRow, JobRunnerRow, Recording
 from service.storage.records import ClaimedJob, Cursor, DiagnosisEntry, Job, JobResult, Page
 from service.storage.records.actors import SERVICE, Actor
 from service.storage.repository.audit.entries import note_change
-from service.storage.repository.baselines import baseline_rows
-from service.storage.repository.clocks import withdraw_clock
-from service.storage.repository.conditions import note_standstill
+from service.storage.repository.conditions.conditions import note_standstill
+from service.storage.repository.conditions.observations import keep_observation
 from service.storage.repository.history.rotor import keep_rotor_finding
 from service.storage.repository.history.starts import keep_start
 from service.storage.repository.history.supply import keep_supply
-from service.storage.repository.observations import keep_observation
-from service.storage.repository.recording_requests import diagnose_rows, fail_rows
-from service.storage.repository.recordings import new_job, require_room
+from service.storage.repository.recordings.baselines import baseline_rows
+from service.storage.repository.recordings.recordings import new_job, require_room
+from service.storage.repository.recordings.requests import diagnose_rows, fail_rows
+from service.storage.repository.relays.clocks import withdraw_clock
 from service.storage.repository.sessions import Order, Sessions, found, only, page_of, record_of
 from service.storage.states import JobPriority, JobState, RecordingState
 from service.storage.texts import storable

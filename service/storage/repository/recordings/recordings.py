@@ -22,10 +22,10 @@ from service.storage.models import (
 from service.storage.records import Cursor, Page, RecordingEntry, RecordingFile, RemoteRecord
 from service.storage.records.actors import SERVICE, Actor
 from service.storage.repository.audit.entries import note_change
-from service.storage.repository.clocks import give_clock
-from service.storage.repository.folders import discard_folder, require_folder
-from service.storage.repository.recording_requests import KIND, diagnose_rows, fail_rows, fetch_row
-from service.storage.repository.remote_records import link_remote_record, recording_to_fill
+from service.storage.repository.recordings.folders import discard_folder, require_folder
+from service.storage.repository.recordings.requests import KIND, diagnose_rows, fail_rows, fetch_row
+from service.storage.repository.relays.clocks import give_clock
+from service.storage.repository.relays.remote_records import link_remote_record, recording_to_fill
 from service.storage.repository.sessions import (
     Order,
     Sessions,

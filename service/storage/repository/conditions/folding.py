@@ -37,11 +37,11 @@ from service.storage.records import (
     RecordObservation,
 )
 from service.storage.repository.alarms.conditions import settle_alarm
-from service.storage.repository.fold_marks import EARLIEST_NS, mark, others_of_bus, resume
+from service.storage.repository.conditions.fold_marks import EARLIEST_NS, mark, others_of_bus, resume
+from service.storage.repository.conditions.observations import OBSERVED, record_observation, take_in_again
+from service.storage.repository.conditions.standing_changes import TOLD, is_material
 from service.storage.repository.history.condition_days import keep_days
-from service.storage.repository.observations import OBSERVED, record_observation, take_in_again
 from service.storage.repository.sessions import Sessions, found, only, record_of
-from service.storage.repository.standing_changes import TOLD, is_material
 from service.storage.texts import storable
 
 _OBSERVATIONS = Base.metadata.tables["observations"]

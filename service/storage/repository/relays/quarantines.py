@@ -18,7 +18,7 @@ from service.storage.repository.alarms.suppression import (
     unsuppress_those_of_relay,
 )
 from service.storage.repository.audit.entries import note_change
-from service.storage.repository.links import change_link
+from service.storage.repository.relays.links import change_link
 from service.storage.repository.sessions import Sessions, found, record_of
 from service.storage.states import AlarmKind, LinkState
 from service.timing.backoff import Backoff

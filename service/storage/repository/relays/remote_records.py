@@ -17,7 +17,7 @@ from service.storage.models import (
     RemoteRecordRow,
 )
 from service.storage.records import RecordingEntry, RemoteRecord
-from service.storage.repository.recording_requests import KIND, fail_row
+from service.storage.repository.recordings.requests import KIND, fail_row
 from service.storage.repository.sessions import Sessions, found, record_of
 from service.storage.states import RecordingSource, RecordingState
 from service.storage.texts import storable

@@ -33,14 +33,14 @@ from service.storage.models import (
 from service.storage.records import Cursor, Deletion, Page, RemoteRecord
 from service.storage.records.actors import SERVICE, Actor
 from service.storage.repository.audit.entries import note_change
-from service.storage.repository.folders import discard_folder, lock_folder
+from service.storage.repository.conditions.observations import forget_observation
 from service.storage.repository.history.rotor import forget_rotor_finding
 from service.storage.repository.history.starts import forget_start
 from service.storage.repository.history.supply import forget_supply
-from service.storage.repository.observations import forget_observation
-from service.storage.repository.recording_requests import KIND, fail_row, fail_rows
-from service.storage.repository.recordings import stored_before
-from service.storage.repository.remote_records import of_records, remote_link
+from service.storage.repository.recordings.folders import discard_folder, lock_folder
+from service.storage.repository.recordings.recordings import stored_before
+from service.storage.repository.recordings.requests import KIND, fail_row, fail_rows
+from service.storage.repository.relays.remote_records import of_records, remote_link
 from service.storage.repository.sessions import Order, Sessions, columns_of, found, only, page_of, record_of
 from service.storage.states import DeletedBy, JobState, RecordingState
 

@@ -26,7 +26,7 @@ from service.storage.records import (
     RecordObservation,
     ToObserve,
 )
-from service.storage.repository.fold_marks import mark_with_bus, resume
+from service.storage.repository.conditions.fold_marks import mark_with_bus, resume
 from service.storage.repository.sessions import Order, Sessions, columns_of, found, page_of
 from service.storage.texts import storable
 

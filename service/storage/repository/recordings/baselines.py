@@ -26,7 +26,7 @@ from service.storage.models import (
 from service.storage.records import BaselineDoubt, BaselineEntry, RecordingEntry
 from service.storage.records.actors import Actor
 from service.storage.repository.audit.entries import note_change
-from service.storage.repository.condition_events import keep_event
+from service.storage.repository.conditions.events import keep_event
 from service.storage.repository.sessions import Sessions, found, only, record_of
 from service.storage.texts import storable
 

@@ -16,7 +16,7 @@ from sqlalchemy.orm import Session
 from service.storage.errors import LeaseLostError
 from service.storage.models import GatewayRow, IedRow, LeaseRow
 from service.storage.records import GatewayEntry
-from service.storage.repository.links import change_link
+from service.storage.repository.relays.links import change_link
 from service.storage.repository.sessions import Sessions
 from service.storage.states import LinkState
 

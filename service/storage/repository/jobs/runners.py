@@ -10,7 +10,7 @@ from sqlalchemy.orm import Session
 
 from service.storage.errors import RunnerEndedError
 from service.storage.models import JobRow, JobRunnerRow
-from service.storage.repository.jobs import retry_or_give_up
+from service.storage.repository.jobs.queue import retry_or_give_up
 from service.storage.repository.sessions import Sessions
 from service.storage.states import JobState
 

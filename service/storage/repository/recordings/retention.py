@@ -22,9 +22,9 @@ from service.storage.models import (
 )
 from service.storage.records import Amount, AppliedRule, DeletedRows, OldRecording
 from service.storage.repository.audit.entries import note_change
-from service.storage.repository.deletions import delete_row, to_delete
-from service.storage.repository.kept_recordings import Keeping, conditions
-from service.storage.repository.recording_requests import ENDED
+from service.storage.repository.recordings.deletions import delete_row, to_delete
+from service.storage.repository.recordings.kept_recordings import Keeping, conditions
+from service.storage.repository.recordings.requests import ENDED
 from service.storage.repository.sessions import Sessions
 from service.storage.states import DeletedBy, JobState, RecordingState, StayReason
 

@@ -9,8 +9,8 @@ from core.diagnosis.verdict import Diagnosis, Verdict
 from core.operation import Operation
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
-from service.storage.repository.kept_recordings import Keeping
-from service.storage.repository.retention import ExpiredRecordings
+from service.storage.repository.recordings.kept_recordings import Keeping
+from service.storage.repository.recordings.retention import ExpiredRecordings
 from service.storage.states import RecordingState
 from testing.service.job_runner import RUNNER
 from testing.service.plants import NOW_NS, SECOND_NS, fault

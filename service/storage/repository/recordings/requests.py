@@ -15,8 +15,8 @@ from service.storage.models import IedRow, LeaseRow, MotorRow, RecordingRequestR
 from service.storage.records import Cursor, Page, RecordingRequest
 from service.storage.records.actors import SERVICE, Actor
 from service.storage.repository.audit.entries import note_change
-from service.storage.repository.conditions import note_standstill
-from service.storage.repository.leases import require_lease
+from service.storage.repository.conditions.conditions import note_standstill
+from service.storage.repository.relays.leases import require_lease
 from service.storage.repository.sessions import (
     Order,
     Sessions,

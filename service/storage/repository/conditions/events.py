@@ -18,7 +18,7 @@ from service.storage.models import ConditionEventRow, MotorRow
 from service.storage.records import ConditionEvent, Cursor, Page
 from service.storage.records.actors import Actor
 from service.storage.repository.audit.entries import note_change
-from service.storage.repository.fold_marks import mark
+from service.storage.repository.conditions.fold_marks import mark
 from service.storage.repository.motor_versions import MOTORS_FILE
 from service.storage.repository.sessions import (
     Order,

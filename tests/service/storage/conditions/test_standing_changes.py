@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from service.storage.repository.standing_changes import is_material
+from service.storage.repository.conditions.standing_changes import is_material
 
 TOLD: dict[str, Any] = {
     "sequence": "abc",

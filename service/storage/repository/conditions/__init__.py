@@ -1,0 +1,1 @@
+"""The conditions of motors: records taken in, folds, what they found, and the events told of motors."""

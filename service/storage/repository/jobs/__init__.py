@@ -1,0 +1,1 @@
+"""Diagnoses to be made: their queue, and who works it off."""

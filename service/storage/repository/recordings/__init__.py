@@ -1,0 +1,1 @@
+"""Recordings: asked for, stored, kept and deleted; the folders of their files, and baselines of them."""
