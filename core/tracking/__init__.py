@@ -1,0 +1,1 @@
+"""Parameters of a motor over the records of its running: resistances, inductances, and their drift."""
