@@ -90,14 +90,49 @@ def check_parameters(record: Fundamental, motor: Motor) -> ParameterCheck:
     ParameterCheck
         What the record tells.
     """
-    admittance, w = record.current.forward / record.voltage.forward, record.angular_frequency
-    machine, size = motor.parameters, abs(admittance)
-    locus = current_locus(machine, w)
-    distance = locus.distance(admittance)
+    current, voltage = record.current, record.voltage
+    noise = sqrt(float(np.trace(current.covariance[:2, :2])) / 2.0) / abs(current.forward)
     # A power-invariant space vector is as long as the rms voltage of the line; in delta sqrt 3 times that.
     delta = motor.nameplate.connection is Connection.DELTA
     rated_V = motor.nameplate.rated_voltage_V * (sqrt(3.0) if delta else 1.0)
-    saturated = SATURATION * abs(abs(record.voltage.forward) / rated_V - 1.0)
+    admittance = current.forward / voltage.forward
+    return check_admittance(
+        admittance, abs(voltage.forward) / rated_V, record.angular_frequency, motor, noise=noise
+    )
+
+
+def check_admittance(
+    admittance: complex,
+    relative_voltage: float,
+    angular_frequency: float,
+    motor: Motor,
+    *,
+    noise: float = 0.0,
+) -> ParameterCheck:
+    """Compare an admittance with the circle of its motor.
+
+    Parameters
+    ----------
+    admittance : complex
+        I1 / V1 of the windings [S].
+    relative_voltage : float
+        Voltage over the rated one.
+    angular_frequency : float
+        Angular frequency of the supply [rad/s].
+    motor : Motor
+        Parameters, their tolerances, and the class of the sensors.
+    noise : float, default 0.0
+        Standard deviation of the current's noise, a share of it.
+
+    Returns
+    -------
+    ParameterCheck
+        What the admittance tells.
+    """
+    w, machine, size = angular_frequency, motor.parameters, abs(admittance)
+    locus = current_locus(machine, w)
+    distance = locus.distance(admittance)
+    saturated = SATURATION * abs(relative_voltage - 1.0)
     by_parameters = 0.0
     for name in ParameterTolerances.names():
         within = getattr(motor.tolerances, name)
@@ -107,7 +142,6 @@ def check_parameters(record: Fundamental, motor: Motor) -> ParameterCheck:
             for off in (within, -within)
         )
     gain, offset = slopes_of_sensors(locus, admittance, w)
-    noise = sqrt(float(np.trace(record.current.covariance[:2, :2])) / 2.0) / abs(record.current.forward)
     return ParameterCheck(
         distance=distance / size,
         parameters=by_parameters / size,

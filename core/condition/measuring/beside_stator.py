@@ -1,12 +1,16 @@
-"""Rotor and supply of a record, beside its stator: no error of theirs takes the diagnosis away."""
+"""Rotor, supply and load of a record, beside its stator: no error of theirs takes the diagnosis away."""
 
 from core.diagnosis.acceptance import Acceptance, Accepted
 from core.diagnosis.verdict import Diagnosis, not_finite
 from core.machines.parameters import Motor
 from core.operation import Operation
 from core.recordings import Recording, RecordingError
+from core.rotor.baseband import baseband_of
+from core.rotor.eccentricity import EccentricityFinding, examine_eccentricity
 from core.rotor.examining import examine_rotor
 from core.rotor.finding import RotorFinding, RotorState
+from core.rotor.pulsation import PulsationFinding, examine_pulsation
+from core.rotor.running_point import without_delay
 from core.supply.figures import SupplyFigures
 from core.supply.measuring import measure_supply
 
@@ -39,6 +43,51 @@ def rotor_of(recording: Recording, accepted: Accepted | None, diagnosis: Diagnos
     if impossible is None:
         return finding
     return _unsupported(recording, f"the figures of the rotor cannot be computed: {impossible} is not finite")
+
+
+def swings_of(
+    accepted: Accepted | None, diagnosis: Diagnosis, rotor: RotorFinding
+) -> tuple[EccentricityFinding, PulsationFinding]:
+    """Tell what a record shows of the air gap and of a load that swings.
+
+    Parameters
+    ----------
+    accepted : Accepted or None
+        The record after the quality gate; None where it was refused.
+    diagnosis : Diagnosis
+        Its diagnosis.
+    rotor : RotorFinding
+        What it tells of the rotor's cage.
+
+    Returns
+    -------
+    EccentricityFinding
+        What it tells of the air gap; its reasons say why it tells nothing.
+    PulsationFinding
+        What it tells of the load, likewise.
+    """
+    if accepted is None:
+        return _nothing_of_swings("the quality gate refused the record")
+    case = accepted.case
+    if case.voltages_assumed:
+        return _nothing_of_swings("no voltages recorded: a supply that pulsates would look the same")
+    try:
+        baseband = without_delay(baseband_of(accepted), case.motor, diagnosis.time_offset_s, assumed=False)
+        if baseband is None:
+            return _nothing_of_swings("the currents are not those of this motor at these voltages")
+        even_rotor = rotor.state is RotorState.HEALTHY
+        eccentricity = examine_eccentricity(baseband, case.motor)
+        pulsation = examine_pulsation(baseband, case.motor, even_rotor=even_rotor)
+    except (ValueError, ArithmeticError) as error:  # so are SignalError and numpy's LinAlgError
+        return _nothing_of_swings(f"the figures of the swings cannot be computed: {error}")
+    impossible = not_finite([eccentricity.as_dict(), pulsation.as_dict()])
+    if impossible is None:
+        return eccentricity, pulsation
+    return _nothing_of_swings(f"the figures of the swings cannot be computed: {impossible} is not finite")
+
+
+def _nothing_of_swings(reason: str) -> tuple[EccentricityFinding, PulsationFinding]:
+    return EccentricityFinding.untold(reason), PulsationFinding.untold(reason)
 
 
 def supply_of(

@@ -7,7 +7,7 @@ from time import perf_counter
 
 import numpy as np
 
-from core.condition.measuring.beside_stator import rotor_of, supply_of
+from core.condition.measuring.beside_stator import rotor_of, supply_of, swings_of
 from core.condition.measuring.measurement import LONGEST_RECORDER, negative_impedance
 from core.condition.observation import Observation, VoltageChannels
 from core.diagnosis.acceptance import Accepted, accept
@@ -20,7 +20,9 @@ from core.diagnosis.stator import diagnose_accepted
 from core.diagnosis.verdict import Diagnosis
 from core.machines.parameters import Motor
 from core.recordings import Channel, Quantity, Recording
+from core.rotor.eccentricity import EccentricityFinding
 from core.rotor.finding import RotorFinding
+from core.rotor.pulsation import PulsationFinding
 from core.supply.figures import SupplyFigures
 
 PHASE_PER_SPACE_VECTOR = sqrt(2.0 / 3.0)
@@ -42,12 +44,18 @@ class Examined:
         What it tells of the rotor's cage.
     supply : SupplyFigures or None
         What it shows of the supply; None where it shows nothing.
+    eccentricity : EccentricityFinding
+        What it tells of the air gap.
+    pulsation : PulsationFinding
+        What it tells of a load that swings.
     """
 
     diagnosis: Diagnosis
     observation: Observation | None
     rotor: RotorFinding
     supply: SupplyFigures | None
+    eccentricity: EccentricityFinding
+    pulsation: PulsationFinding
 
     def as_dict(self) -> dict[str, object]:
         """Return the document that `mcc diagnose --json` prints; its keys are a contract.
@@ -55,11 +63,13 @@ class Examined:
         Returns
         -------
         dict of str to object
-            The document of the diagnosis, with `rotor` and `supply`.
+            The document of the diagnosis, with `rotor`, `supply`, `eccentricity` and `pulsation`.
         """
         return self.diagnosis.as_dict() | {
             "rotor": self.rotor.as_dict(),
             "supply": None if self.supply is None else self.supply.as_dict(),
+            "eccentricity": self.eccentricity.as_dict(),
+            "pulsation": self.pulsation.as_dict(),
         }
 
 
@@ -122,7 +132,7 @@ def examine(
     Returns
     -------
     Examined
-        Diagnosis, observation, rotor and supply.
+        Diagnosis, observation, rotor, supply, air gap and swings of the load.
 
     Raises
     ------
@@ -138,11 +148,15 @@ def examine(
     supply, problem = supply_of(recording, motor, acceptance)
     if problem is not None:
         diagnosis = replace(diagnosis, reasons=(*diagnosis.reasons, problem))
+    rotor = rotor_of(recording, accepted, diagnosis)
+    eccentricity, pulsation = swings_of(accepted, diagnosis, rotor)
     return Examined(
         diagnosis=diagnosis,
         observation=None if accepted is None or undated else observation_of(recording, accepted),
-        rotor=rotor_of(recording, accepted, diagnosis),
+        rotor=rotor,
         supply=supply,
+        eccentricity=eccentricity,
+        pulsation=pulsation,
     )
 
 

@@ -7,6 +7,8 @@ from pathlib import Path
 
 from rich.text import Text
 
+from core.classification.classification import Classification
+from core.classification.record import classify_record
 from core.condition.measuring.observing import Examined, examine
 from core.diagnosis.errors import DiagnosisError
 from core.diagnosis.stator import learn_baseline
@@ -19,6 +21,7 @@ from core.quantity_text import with_unit
 from core.recordings import RecordingError
 from service.cli.output import WRONG_USE, CommandError, failing_clearly, print_document, results
 from service.cli.recordings.files import read_recording, with_advice
+from service.client.classification import answer_rows
 from service.client.rotor_and_supply import rotor_words, sideband_words, supply_words
 from service.client.tables import FittedTable
 from service.client.verdicts import OPERATIONS, detection, interval, level, load, verdict_text
@@ -64,11 +67,13 @@ def diagnose_recording(
     diagnosis = examined.diagnosis
     diagnosis = replace(diagnosis, reasons=(*diagnosis.reasons, *repaired))
     examined = replace(examined, diagnosis=diagnosis)
+    answer = classify_record(examined, found)
     if as_json:
+        document = examined.as_dict() | {"classification": answer.as_dict()}
         source = str(found.parameters_source)
-        print_document({**examined.as_dict(), "motor_file": str(motor_file), "parameters_source": source})
+        print_document({**document, "motor_file": str(motor_file), "parameters_source": source})
     else:
-        results().print(_table(record, motor_file, found.parameters_source, examined))
+        results().print(_table(record, motor_file, found.parameters_source, examined, answer))
 
 
 @contextmanager
@@ -104,7 +109,9 @@ def _verdict(diagnosis: Diagnosis) -> Text:
     return verdict if does is None else verdict.append(f" (the recording shows {does})")
 
 
-def _table(record: Path, motor_file: Path, source: ParametersSource, examined: Examined) -> FittedTable:
+def _table(
+    record: Path, motor_file: Path, source: ParametersSource, examined: Examined, answer: Classification
+) -> FittedTable:
     diagnosis = examined.diagnosis
     table = FittedTable(title=Text(record.name), title_justify="left", show_header=False)
     table.add_row("verdict", _verdict(diagnosis))
@@ -124,6 +131,8 @@ def _table(record: Path, motor_file: Path, source: ParametersSource, examined: E
     if diagnosis.residual_rms_A is not None:
         table.add_row("residual", f"{with_unit(diagnosis.residual_rms_A, 'A', 4)} rms")
     _add_what_is_beside(table, examined)
+    for name, words in answer_rows(answer):
+        table.add_row(name, Text(words))
     table.add_row("model, method", f"{diagnosis.model}, {diagnosis.method}")
     table.add_row("effort", f"{diagnosis.evaluations} evaluations, {diagnosis.compute_seconds:.3f} s")
     table.add_row("motor file", Text(str(motor_file)))

@@ -9,11 +9,14 @@ from typing import Any
 import numpy as np
 import pytest
 
+from core.classification.record import classify_record
 from core.condition.measuring.observing import Examined
 from core.machines.motor_file.writer import write_motor
 from core.machines.parameters import ParametersSource
 from core.quality.finding import QualityFinding
 from core.recordings import comtrade
+from core.rotor.eccentricity import EccentricityFinding
+from core.rotor.pulsation import PulsationFinding
 from service.cli import main
 from service.cli.output import results
 from service.cli.recordings.diagnose import _table
@@ -34,8 +37,17 @@ def test_what_keeps_a_record_from_being_diagnosed_is_said_once(capsys: pytest.Ca
             QualityFinding("duration", 1.0, 0.2, "s", passed=True, message="long enough"),
         ),
     )
-    examined = Examined(diagnosis, None, SHORT_RECORD, None)
-    results().print(_table(Path("HR_1.CFG"), Path("motor.toml"), ParametersSource.GIVEN, examined))
+    refused = "the quality gate refused the record"
+    examined = Examined(
+        diagnosis,
+        None,
+        SHORT_RECORD,
+        None,
+        EccentricityFinding.untold(refused),
+        PulsationFinding.untold(refused),
+    )
+    answer = classify_record(examined, REFERENCE)
+    results().print(_table(Path("HR_1.CFG"), Path("motor.toml"), ParametersSource.GIVEN, examined, answer))
     shown = capsys.readouterr().out
     assert shown.count(CLIPPED) == 1
     assert "motor.toml" in shown
