@@ -79,7 +79,7 @@ def commission(
     """
     begun = perf_counter()
     report = progress or _no_progress
-    prior = prior_of(plate.nameplate, plate.parameters)
+    prior = prior_of(plate.nameplate, plate.parameters, plate.wound_rotor)
     starts = [
         start_of(one, plate.nameplate, plate.channels, transformers=plate.transformers, span_s=span_s)
         for one in recordings
@@ -235,6 +235,7 @@ def _result(
         plate.transformers,
         ParametersSource.COMMISSIONED,
         start_limits=plate.start_limits,
+        wound_rotor=plate.wound_rotor,
     )
     return Commissioning(
         motor=motor,

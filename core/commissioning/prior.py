@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from core.machines.parameters import MachineParameters, Nameplate
+from core.machines.parameters import MachineParameters, Nameplate, WoundRotor
 from core.machines.typical import typical_parameters
 
 PARAMETERS = (
@@ -42,7 +42,9 @@ class Prior:
         return self.expected.rotor_leakage_H / self.expected.stator_leakage_H
 
 
-def prior_of(nameplate: Nameplate, parameters: MachineParameters | None) -> Prior:
+def prior_of(
+    nameplate: Nameplate, parameters: MachineParameters | None, wound_rotor: WoundRotor | None = None
+) -> Prior:
     """Return what is expected of a motor, with known parameters or without.
 
     Without them they are typical of the rating: the middle of a wide search, and what stands in for a
@@ -54,6 +56,8 @@ def prior_of(nameplate: Nameplate, parameters: MachineParameters | None) -> Prio
         Rated values of the motor.
     parameters : MachineParameters or None
         Parameters of the motor file, None where it has none.
+    wound_rotor : WoundRotor or None, optional
+        The rotor's winding; None of a cage.
 
     Returns
     -------
@@ -66,4 +70,4 @@ def prior_of(nameplate: Nameplate, parameters: MachineParameters | None) -> Prio
         return Prior(parameters, known, doubt, from_file=True)
     guessed = dict.fromkeys(PARAMETERS, 4.0) | {"inertia_kgm2": 15.0}
     doubt = dict.fromkeys(PARAMETERS, 0.5) | {"inertia_kgm2": 1.0}
-    return Prior(typical_parameters(nameplate).parameters, guessed, doubt, from_file=False)
+    return Prior(typical_parameters(nameplate, wound_rotor).parameters, guessed, doubt, from_file=False)

@@ -12,6 +12,7 @@ from core.diagnosis.case import LONGEST_RECORD_S, Case, case_of
 from core.diagnosis.errors import NoVoltagesError
 from core.diagnosis.fundamental import Fundamental, fundamental_of
 from core.machines.parameters import Motor
+from core.machines.wound_rotor import while_running
 from core.operation import Operation
 from core.quality import examine
 from core.quality.finding import QualityFinding, all_passed, file_warning, finding
@@ -147,7 +148,8 @@ def _accept(recording: Recording, motor: Motor, *, currents_only: bool) -> Accep
     if passed is None:
         return Acceptance(tuple(quality), assumed, None, does)
     rate, frequency = measured.sample_rate_hz, passed.frequency_hz
-    case = case_of(motor, measured.current_abc, passed.voltage_ab, rate, frequency, passed.sequence)
+    running = while_running(motor)
+    case = case_of(running, measured.current_abc, passed.voltage_ab, rate, frequency, passed.sequence)
     case = replace(case, voltages_assumed=assumed)
     return Acceptance(tuple(quality), assumed, Accepted(measured, case, fundamental_of(case), used), does)
 

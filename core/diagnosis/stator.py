@@ -26,10 +26,16 @@ from core.machines.parameters import Motor
 from core.machines.playback import Playback, electrical_to_rpm
 from core.machines.split_winding import SplitWinding
 from core.machines.stator_models import MODELS
+from core.machines.wound_rotor import resistance_ratios
 from core.quality.assumed_supply import SUPPLY_UNBALANCE
 from core.quality.finding import QualityFinding
 from core.quality.scale import current_scale_advice
 from core.recordings import Recording
+
+SPEED_UNKNOWN = (
+    "the resistance at the slip rings is not known: the stator and the load are told all the same, slip and "
+    "speed are not"
+)
 
 
 def diagnose(
@@ -159,6 +165,8 @@ def _diagnosed(
         )
     if baseline is not None:
         reasons.append(baseline.reason)
+    if resistance_ratios(motor).are_open:
+        reasons.append(SPEED_UNKNOWN)
     explained = is_explained(explanation, tolerance)
     only_parameters = reasons[0].startswith(PARAMETERS_DO_NOT_FIT)
     named = verdict is Verdict.FAULT or (verdict is Verdict.WATCH and explained and not only_parameters)
@@ -294,7 +302,10 @@ def _parameters(case: Case, fit: Fit) -> FittedParameters:
     )
 
 
-def _speed_rpm(case: Case, playback: Playback, fit: Fit) -> float:
+def _speed_rpm(case: Case, playback: Playback, fit: Fit) -> float | None:
+    """Speed of the fitted candidate; None where the resistance of the rotor circuit is unknown."""
+    if resistance_ratios(case.motor).are_open:
+        return None
     mean = playback.steady_state(fit.candidate).mean_speed
     return float(electrical_to_rpm(mean, case.motor.nameplate.pole_pairs)[0])
 

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field, fields
 from enum import StrEnum
-from math import pi
+from math import pi, sqrt
 from typing import Final, Self
 
 from core.machines.sensors import SensorClass
@@ -20,6 +20,14 @@ class Connection(StrEnum):
 
     STAR = "star"
     DELTA = "delta"
+
+
+class MachineKind(StrEnum):
+    """Kinds of induction motors, by their rotor."""
+
+    CAGE = "cage"
+    WOUND_ROTOR = "wound-rotor"
+    """A rotor winding whose ends are on slip rings."""
 
 
 class ParametersSource(StrEnum):
@@ -68,6 +76,11 @@ class Nameplate:
     def rated_torque_Nm(self) -> float:
         """Torque that load level 1 stands for, P_B / (w_b / p), at synchronous speed [N m]."""
         return self.rated_power_W * self.pole_pairs / self.rated_angular_frequency
+
+    @property
+    def winding_voltage_V(self) -> float:
+        """Rated voltage of a winding, rms [V]."""
+        return self.rated_voltage_V / (sqrt(3.0) if self.connection is Connection.STAR else 1.0)
 
     @property
     def base_impedance_ohm(self) -> float:
@@ -259,6 +272,34 @@ class StartLimits:
 
 
 @dataclass(frozen=True, slots=True)
+class WoundRotor:
+    """A rotor winding on slip rings, as its plate has it, and what is connected to the rings.
+
+    Parameters
+    ----------
+    open_circuit_voltage_V : float
+        Voltage between two open rings at standstill, rated voltage on the stator, rms [V].
+    rated_current_A : float
+        Current of a ring at rated power, rms [A].
+    rated_speed_rpm : float or None, optional
+        Speed at rated power with the rings shorted [rpm].
+    external_resistance_ohm : tuple of float, default (0.0, 0.0)
+        Least and largest resistance between a ring and the star point while the motor runs [ohm]; the same
+        twice where it is known, zero where the rings are shorted.
+    """
+
+    open_circuit_voltage_V: float
+    rated_current_A: float
+    rated_speed_rpm: float | None = None
+    external_resistance_ohm: tuple[float, float] = (0.0, 0.0)
+
+    @property
+    def standstill_impedance_ohm(self) -> float:
+        """U_20 / (sqrt 3 I_2N), the resistance a phase that makes about rated torque at standstill [ohm]."""
+        return self.open_circuit_voltage_V / (sqrt(3.0) * self.rated_current_A)
+
+
+@dataclass(frozen=True, slots=True)
 class Motor:
     """All that the diagnosis needs to know of one motor.
 
@@ -284,6 +325,8 @@ class Motor:
         How far they may be off.
     start_limits : StartLimits, optional
         What its starts may do to it.
+    wound_rotor : WoundRotor or None, optional
+        The rotor's winding; None of a motor with a cage.
     """
 
     name: str
@@ -296,6 +339,12 @@ class Motor:
     parameters_source: ParametersSource = ParametersSource.GIVEN
     tolerances: ParameterTolerances = field(default_factory=ParameterTolerances)
     start_limits: StartLimits = field(default_factory=StartLimits)
+    wound_rotor: WoundRotor | None = None
+
+    @property
+    def kind(self) -> MachineKind:
+        """Its kind, which its rotor tells."""
+        return MachineKind.CAGE if self.wound_rotor is None else MachineKind.WOUND_ROTOR
 
     @property
     def is_typical(self) -> bool:

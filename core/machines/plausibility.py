@@ -20,6 +20,14 @@ LOCKED_ROTOR_CURRENT = (1.5, 20.0)
 """Locked rotor's current over the rated one."""
 LOCKED_ROTOR_S = (0.5, 300.0)
 MOST_STARTS_PER_HOUR = 1000
+ROTOR_VOLTAGE_V = (10.0, 10e3)
+"""Between the open slip rings of a wound rotor at standstill."""
+ROTOR_POWER = (0.6, 2.0)
+"""sqrt(3) times rotor voltage and rotor current, over the rated power."""
+RATED_SPEED = (0.8, 0.9999)
+"""Of a wound rotor with its rings shorted, over the synchronous one."""
+EXTERNAL_RESISTANCE = 2.0
+"""Largest resistance at the slip rings of a running motor, over that of rated torque at standstill."""
 RATED_CURRENT_A = (0.01, 10e3)
 """Rated power over sqrt(3) times rated voltage [A]."""
 

@@ -15,8 +15,8 @@ They are no more than a beginning. One motor of a rating differs from the next b
 of a high slip by more. Only a start of the motor itself, or its data sheet, tells its own parameters.
 """
 
-from dataclasses import dataclass
-from math import exp, log
+from dataclasses import dataclass, replace
+from math import exp, log, sqrt
 
 import numpy as np
 
@@ -26,6 +26,7 @@ from core.machines.parameters import (
     Nameplate,
     ParametersSource,
     ParameterTolerances,
+    WoundRotor,
 )
 
 POWERS_W = (750.0, 7.5e3, 75e3, 750e3, 7.5e6)
@@ -47,6 +48,9 @@ FACTORS = {
     "stator_self_inductance_H": REACTANCE_FACTOR,
     "inertia_kgm2": INERTIA_FACTOR,
 }
+
+PLATE_FACTOR = 1.6
+"""The same of a wound rotor's resistance by its plate: speed and voltages are rounded, windings warm up."""
 
 ALL_ALIKE = 3
 """Impedances beyond what is typical that point to a common cause."""
@@ -80,16 +84,18 @@ class TypicalParameters:
     intervals: dict[str, tuple[float, float]]
 
 
-def typical_parameters(nameplate: Nameplate) -> TypicalParameters:
+def typical_parameters(nameplate: Nameplate, wound_rotor: WoundRotor | None = None) -> TypicalParameters:
     """Return the parameters that are typical of a nameplate.
 
     Between the powers of the table the logarithm of a parameter goes evenly with that of the power. Beyond
-    them the last one holds.
+    them the last one holds. The resistance of a wound rotor is that of its plate, where this has a speed.
 
     Parameters
     ----------
     nameplate : Nameplate
         Rated values of the motor.
+    wound_rotor : WoundRotor or None, optional
+        The rotor's winding; None of a cage.
 
     Returns
     -------
@@ -106,11 +112,43 @@ def typical_parameters(nameplate: Nameplate) -> TypicalParameters:
         magnetising_inductance_H=_at(MAGNETISING_REACTANCE_PU, nameplate) * base_ohm / w_b,
         inertia_kgm2=INERTIA_CONSTANT_S * nameplate.base_inertia_kgm2,
     )
+    factors = FACTORS
+    plate_ohm = None if wound_rotor is None else plate_resistance_ohm(nameplate, wound_rotor)
+    if plate_ohm is not None:
+        parameters = replace(parameters, rotor_resistance_ohm=plate_ohm)
+        factors = FACTORS | {"rotor_resistance_ohm": PLATE_FACTOR}
     intervals = {
         name: (getattr(parameters, name) / factor, getattr(parameters, name) * factor)
-        for name, factor in FACTORS.items()
+        for name, factor in factors.items()
     }
     return TypicalParameters(parameters, intervals)
+
+
+def plate_resistance_ohm(nameplate: Nameplate, wound_rotor: WoundRotor) -> float | None:
+    """Return the resistance of a wound rotor that its plate tells, referred to the stator.
+
+    Of the power that crosses the air gap, P / (1 - s), the share s is lost in the rotor: 3 R_2 I_2^2. The
+    ratio of turns is that of the stator winding's voltage over the open rotor winding's.
+
+    Parameters
+    ----------
+    nameplate : Nameplate
+        Rated values of the motor.
+    wound_rotor : WoundRotor
+        Its rotor.
+
+    Returns
+    -------
+    float or None
+        R_r' [ohm]; None where the plate has no speed.
+    """
+    if wound_rotor.rated_speed_rpm is None:
+        return None
+    synchronous_rpm = 60.0 * nameplate.rated_frequency_Hz / nameplate.pole_pairs
+    slip = 1.0 - wound_rotor.rated_speed_rpm / synchronous_rpm
+    own_ohm = slip / (1.0 - slip) * nameplate.rated_power_W / (3.0 * wound_rotor.rated_current_A**2)
+    turns_ratio = sqrt(3.0) * nameplate.winding_voltage_V / wound_rotor.open_circuit_voltage_V
+    return turns_ratio**2 * own_ohm
 
 
 def atypical(motor: Motor) -> tuple[str, ...]:
@@ -129,7 +167,7 @@ def atypical(motor: Motor) -> tuple[str, ...]:
     tuple of str
         Sentences; none of a motor with typical parameters.
     """
-    found = typical_parameters(motor.nameplate)
+    found = typical_parameters(motor.nameplate, motor.wound_rotor)
     beyond = {}
     for name, (low, high) in found.intervals.items():
         value = getattr(motor.parameters, name)

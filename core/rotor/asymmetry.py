@@ -9,8 +9,9 @@ import numpy as np
 from core.machines.base import Array
 from core.machines.parameters import Motor
 from core.machines.steady_state import ComplexArray
+from core.machines.wound_rotor import resistance_ratios
 from core.rotor.baseband import Baseband
-from core.rotor.cage_leakage import LEAST, MOST, without_leakage
+from core.rotor.cage_leakage import OF_A_CAGE, OF_A_WINDING, without_leakage
 from core.rotor.rotor_circuit import RotorLines, rotor_lines
 from core.rotor.running_point import errors, running_point
 from core.rotor.sidebands import Lines, fit_lines, without_lines
@@ -22,8 +23,12 @@ FEWEST_TURNS = 1.2
 """Least distance of a line from the fundamental, in cycles of it over the record."""
 POINTS_A_TURN = 4.0
 """Fineness of the search; a line half a step off keeps 97 % of its amplitude."""
+FINER = 10
+"""Points between two of the search where the line's place tells an unknown slip."""
 GUARD_TURNS, REFERENCE_TURNS = 1.0, 24
 """Distance from the search at which noise is taken from, and how far off, in cycles over the record."""
+LINE_TURNS = 2.0
+"""Half of the width of a line of a record that fades in and out (Hann), in cycles over the record."""
 HIGHEST_OVER_SUPPLY = 0.6
 """Highest distance of a line over the supply's frequency; near 1 the means over a cycle leave nothing."""
 FALSE_ALARM = 1e-4
@@ -103,7 +108,10 @@ def measure_asymmetry(baseband: Baseband, angle: Array, motor: Motor) -> Asymmet
     kappa = np.linspace(first, last, max(2, ceil((last - first) * POINTS_A_TURN) + 1)) / record.turns
     lines = fit_lines(baseband, angle, kappa)
     greatest = int(np.argmax(np.abs(record.meaning(lines, kappa).asymmetry)))
-    found = _measured(record, lines.at(greatest), kappa[greatest : greatest + 1])
+    if resistance_ratios(motor).are_open:
+        found = _measured(record, *_more_finely(record, float(kappa[greatest])))
+    else:
+        found = _measured(record, lines.at(greatest), kappa[greatest : greatest + 1])
     if found.is_detected:
         return found
     strongest = int(np.argmax(np.abs(lines.upper[:, 1]) + np.abs(lines.lower[:, 1])))
@@ -131,14 +139,22 @@ class _Record:
     @property
     def search(self) -> tuple[float, float]:
         """Distances between which the line is looked for, in cycles over the record."""
-        turns = self.turns
-        return max(LOWEST_RATIO * turns, FEWEST_TURNS), min(HIGHEST_RATIO * turns, self.highest)
+        turns, ratios = self.turns, resistance_ratios(self.motor)
+        lowest, highest = LOWEST_RATIO * ratios.least, HIGHEST_RATIO * ratios.most
+        return max(lowest * turns, FEWEST_TURNS), min(highest * turns, self.highest)
 
-    def around(self) -> Array:
-        """Return ratios outside the search, a cycle over the record apart, shape (references,)."""
-        first, last = self.search
-        below = np.arange(floor(first - GUARD_TURNS), FEWEST_TURNS, -1.0)
-        above = np.arange(last + GUARD_TURNS, min(self.highest, last + GUARD_TURNS + REFERENCE_TURNS) + 1.0)
+    def around(self, kappa: float) -> Array:
+        """Return ratios outside the search, a cycle over the record apart, shape (references,).
+
+        Where the slip is unknown the search leaves nothing outside: then they are those beside a line.
+        """
+        if resistance_ratios(self.motor).are_open:
+            first = last = max(kappa * self.turns, FEWEST_TURNS)
+            guard = LINE_TURNS
+        else:
+            (first, last), guard = self.search, GUARD_TURNS
+        below = np.arange(floor(first - guard), FEWEST_TURNS, -1.0)
+        above = np.arange(last + guard, min(self.highest, last + guard + REFERENCE_TURNS) + 1.0)
         return np.concatenate([below[:REFERENCE_TURNS], above]) / self.turns
 
     def meaning(
@@ -156,8 +172,16 @@ class _Record:
         return complex(self.meaning(line, kappa, motor, baseband).asymmetry[0])
 
 
+def _more_finely(record: _Record, kappa: float) -> tuple[Lines, Array]:
+    """Return the pair of lines of the greatest asymmetry near a place, and its own: it tells the slip."""
+    near = kappa + np.linspace(-1.0, 1.0, 2 * FINER + 1) / (POINTS_A_TURN * record.turns)
+    lines = fit_lines(record.baseband, record.angle, near)
+    greatest = int(np.argmax(np.abs(record.meaning(lines, near).asymmetry)))
+    return lines.at(greatest), near[greatest : greatest + 1]
+
+
 def _measured(record: _Record, line: Lines, kappa: Array) -> Asymmetry:
-    baseband, around = record.baseband, record.around()
+    baseband, around = record.baseband, record.around(float(kappa[0]))
     left = without_lines(baseband, record.angle, kappa, line)
     beside = record.meaning(fit_lines(left, record.angle, around), around)
     noise = _mean_square(beside.asymmetry)
@@ -175,6 +199,7 @@ def _measured(record: _Record, line: Lines, kappa: Array) -> Asymmetry:
     radial = sqrt((noise + leak**2) / 2.0)
     spread = NORMAL_95 * hypot(radial, scale)
     current = abs(baseband.current.mean())
+    leakage = OF_A_CAGE if record.motor.wound_rotor is None else OF_A_WINDING
     resistive = partial(
         without_leakage,
         slip_over_resistance=running_point(baseband, record.motor).slip_over_resistance,
@@ -182,10 +207,10 @@ def _measured(record: _Record, line: Lines, kappa: Array) -> Asymmetry:
     )
     return Asymmetry(
         ratio=float(kappa[0]),
-        value=resistive(abs(value)),
+        value=resistive(abs(value), factor=leakage.usual),
         interval=(
-            resistive(abs(value) - spread, factor=MOST),
-            resistive(abs(value) + spread, factor=LEAST),
+            resistive(abs(value) - spread, factor=leakage.most),
+            resistive(abs(value) + spread, factor=leakage.least),
         ),
         threshold=threshold,
         detection_limit=threshold + NINE_IN_TEN * radial,

@@ -1,9 +1,11 @@
-"""The rotor's cage as one record shows it: what was measured, and what follows from it."""
+"""The rotor as one record shows it: what was measured, and what follows from it."""
 
 from functools import partial
 
 from core.diagnosis.acceptance import Accepted
 from core.diagnosis.verdict import Diagnosis
+from core.machines.parameters import Motor
+from core.machines.wound_rotor import resistance_at_rings_ohm, resistance_ratios
 from core.rotor.asymmetry import measure_asymmetry
 from core.rotor.baseband import Baseband, baseband_of
 from core.rotor.finding import RotorFinding, RotorState, decibels, load_bin
@@ -14,10 +16,21 @@ from core.rotor.sidebands import sideband_angle
 FEWEST_TURNS = 1.5
 """Least distance of the sidebands from the fundamental, in cycles of it over the record."""
 LOWEST_SLIP, HIGHEST_SLIP = 1e-4, 0.2
+HIGHEST_SLIP_AT_RINGS = 0.28
+"""The same of a wound rotor with resistance at its rings; the sidebands keep away from the supply's line."""
+
+SLIP_TOO_SMALL = (
+    "the resistance at the slip rings is not known, and with the least of it the sidebands are too near the "
+    "supply's line for this record: it takes a longer one, or more load"
+)
+SLIP_TOO_LARGE = (
+    "the resistance at the slip rings is not known, and with the most of it the sidebands are too far from "
+    "the supply's line: give a smaller external_resistance_ohm under [rotor_circuit], or record at less load"
+)
 
 
 def examine_rotor(accepted: Accepted, diagnosis: Diagnosis) -> RotorFinding:
-    """Tell from one record whether the rotor's cage has broken bars.
+    """Tell from one record whether the rotor's cage has broken bars, or a wound rotor a bad contact.
 
     Parameters
     ----------
@@ -39,14 +52,27 @@ def examine_rotor(accepted: Accepted, diagnosis: Diagnosis) -> RotorFinding:
         return _unsupported(duration_s, "the currents are not those of this motor at these voltages")
     point = running_point(baseband, motor)
     slip, load_level = point.slip(motor), point.torque_Nm / motor.nameplate.rated_torque_Nm
-    unsupported = partial(_unsupported, duration_s, slip=slip, load_level=load_level)
-    if not LOWEST_SLIP < slip <= HIGHEST_SLIP:
+    ratios = resistance_ratios(motor)
+    told_slip = None if ratios.are_open else slip
+    unsupported = partial(_unsupported, duration_s, slip=told_slip, load_level=load_level)
+    highest_slip = HIGHEST_SLIP if motor.wound_rotor is None else HIGHEST_SLIP_AT_RINGS
+    if not LOWEST_SLIP < slip * ratios.least <= highest_slip:
         return unsupported(f"the slip of {slip:.2%} is not that of a motor that runs steadily under load")
     if 2.0 * slip * case.frequency_hz * duration_s < FEWEST_TURNS:
         return unsupported(_too_short(baseband, slip, case.frequency_hz))
     angle = sideband_angle(baseband, slip_course(baseband, motor, slip))
     found = measure_asymmetry(baseband, angle, motor)
-    state, reasons = judge(found, assumed=case.voltages_assumed, typical=motor.is_typical)
+    state, reasons = judge(found, motor.kind, assumed=case.voltages_assumed, typical=motor.is_typical)
+    if ratios.are_open and found.is_detected:
+        told_slip = slip * found.ratio
+        reasons.append(_told_of_rings(motor, found.ratio, told_slip))
+    elif ratios.are_open:
+        lowest_turns = 2.0 * slip * ratios.least * case.frequency_hz * duration_s
+        if state is RotorState.HEALTHY and lowest_turns < FEWEST_TURNS:
+            return unsupported(SLIP_TOO_SMALL)
+        if state is RotorState.HEALTHY and slip * ratios.most > highest_slip:
+            return unsupported(SLIP_TOO_LARGE)
+        reasons.append("the slip is not known: no sideband tells the resistance at the slip rings")
     return RotorFinding(
         state=state,
         lower_sideband_dB=decibels(found.lower),
@@ -54,12 +80,20 @@ def examine_rotor(accepted: Accepted, diagnosis: Diagnosis) -> RotorFinding:
         severity_dB=decibels(found.value),
         severity_dB_ci95=(decibels(found.interval[0]), decibels(found.interval[1])),
         detection_limit_dB=decibels(found.detection_limit),
-        slip=slip,
+        slip=told_slip,
         load_level=load_level,
         load_bin=load_bin(load_level),
         duration_s=duration_s,
         load_oscillation_dB=decibels(found.load_torque),
         reasons=(*reasons, *_remarks(baseband)),
+    )
+
+
+def _told_of_rings(motor: Motor, ratio: float, slip: float) -> str:
+    ohm = max(0.0, resistance_at_rings_ohm(motor, ratio))
+    return (
+        f"the sidebands tell a slip of {slip:.2%}, and with it {ohm:.3g} ohm a phase between the slip rings "
+        "and their star point"
     )
 
 

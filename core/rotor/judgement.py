@@ -1,5 +1,8 @@
 """What follows from the rotor's asymmetry in one record."""
 
+from typing import Final
+
+from core.machines.parameters import MachineKind
 from core.rotor.asymmetry import Asymmetry
 from core.rotor.finding import RotorState, decibels
 
@@ -15,15 +18,27 @@ LEAST_LOAD_SHARE = 0.5
 asymmetry of the rotor needs none; an inertia that is wrong by a factor of two makes a third of it."""
 LOAD_OSCILLATION = "load oscillation"
 """So begins the reason that tells of one."""
+UNEVEN_WINDING = "an uneven rotor winding"
+"""So begins what is said of a wound rotor."""
+FAULTY: Final = {
+    MachineKind.CAGE: "broken bars or a broken end ring",
+    MachineKind.WOUND_ROTOR: f"{UNEVEN_WINDING}: a bad contact of a brush, a slip ring or a joint in one "
+    "phase, or an uneven resistance outside the motor",
+}
+"""What a faulty rotor of each kind has."""
 
 
-def judge(found: Asymmetry, *, assumed: bool, typical: bool) -> tuple[RotorState, list[str]]:
+def judge(
+    found: Asymmetry, kind: MachineKind, *, assumed: bool, typical: bool
+) -> tuple[RotorState, list[str]]:
     """Judge the rotor's asymmetry.
 
     Parameters
     ----------
     found : Asymmetry
         The asymmetry.
+    kind : MachineKind
+        What the rotor is.
     assumed : bool
         Whether no voltages were recorded.
     typical : bool
@@ -36,7 +51,7 @@ def judge(found: Asymmetry, *, assumed: bool, typical: bool) -> tuple[RotorState
     list of str
         Its reasons.
     """
-    state, reason = _state(found)
+    state, reason = _state(found, kind)
     reasons = [reason]
     if state is RotorState.FAULT and (assumed or typical):
         state = RotorState.WATCH
@@ -53,12 +68,12 @@ def judge(found: Asymmetry, *, assumed: bool, typical: bool) -> tuple[RotorState
     return state, reasons
 
 
-def _state(found: Asymmetry) -> tuple[RotorState, str]:
+def _state(found: Asymmetry, kind: MachineKind) -> tuple[RotorState, str]:
     low, high = (decibels(bound) for bound in found.interval)
     severity, limit = decibels(found.value), decibels(found.detection_limit)
     uneven = f"the rotor's resistance is uneven by {severity:.1f} dB (95 %: {low:.1f} to {high:.1f} dB)"
     if found.is_detected and low > FAULT_DB:
-        return RotorState.FAULT, f"{uneven}, above {FAULT_DB:g} dB: broken bars or a broken end ring"
+        return RotorState.FAULT, f"{uneven}, above {FAULT_DB:g} dB: {FAULTY[kind]}"
     if found.is_detected and severity > WATCH_DB:
         return (
             RotorState.WATCH,

@@ -41,6 +41,7 @@ def start_parameters(recording: Recording, motor: Motor) -> StartParameters:
         motor.sensors,
         motor.transformers,
         motor.parameters_source,
+        wound_rotor=motor.wound_rotor,
     )
     found = commission([recording], plate, span_s=(0.0, LONGEST_COMPARED_S))
     (start,) = found.starts

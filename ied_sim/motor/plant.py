@@ -6,13 +6,13 @@ windows of one plant are consistent with each other and the same every time. Wit
 follows soon goes on where the one before it was.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil, floor, inf, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
-from core.machines.parameters import Connection, Motor
+from core.machines.parameters import Motor
 from ied_sim.motor.cage import USUAL_CAGE, Cage, cage_loops
 from ied_sim.motor.contactor import Closure, Contactor
 from ied_sim.motor.course import Points, value_at
@@ -24,7 +24,9 @@ from ied_sim.motor.interpolation import MARGIN, interpolated
 from ied_sim.motor.joint import JointCourse
 from ied_sim.motor.load import Load
 from ied_sim.motor.rotor import RotorLoops, three_coils
+from ied_sim.motor.running_state import RunningMotor
 from ied_sim.motor.sensors import Sensors
+from ied_sim.motor.slip_rings import SlipRings, sections
 from ied_sim.motor.supply import Supply
 from ied_sim.motor.trajectory import Trajectory
 from ied_sim.motor.warming import COLD, ResistanceFactors, Warming
@@ -72,7 +74,7 @@ class MotorPlant:
     course over time, and `joint` a bad one in a line. The rotor's angle is random at the beginning of each
     window, and with it the phase of all that turns with it, unless the window goes on from an earlier one's
     `trajectory`. The contactor connects the motor, which then starts from rest; with None the motor always
-    runs.
+    runs. `slip_rings` are those of a wound rotor, which has no bars.
     """
 
     motor: Motor
@@ -88,6 +90,7 @@ class MotorPlant:
     cage: Cage = USUAL_CAGE
     eccentricity: Eccentricity = CENTRED
     trajectory: Trajectory | None = None
+    slip_rings: SlipRings | None = None
 
     def window(
         self, start_s: float, duration_s: float, sample_rate_hz: float, *, step_rate_hz: float = STEP_RATE_HZ
@@ -143,7 +146,7 @@ class MotorPlant:
         """
         nameplate = self.motor.nameplate
         synchronous = 2 * np.pi * nameplate.rated_frequency_Hz / nameplate.pole_pairs
-        pull = self._torque_over_slip(nameplate.rated_frequency_Hz)
+        pull = self._running.torque_over_slip(0.0, nameplate.rated_frequency_Hz)
         time_constant_s = self.load.inertia_kgm2 * synchronous / pull
         return max(SETTLING_S, TIME_CONSTANTS_TO_SETTLE * time_constant_s)
 
@@ -153,7 +156,8 @@ class MotorPlant:
         nameplate = self.motor.nameplate
         speed = 2 * np.pi * nameplate.rated_frequency_Hz / nameplate.pole_pairs
         run_up_s = self.inertia_kgm2 * speed / nameplate.rated_torque_Nm
-        return max(START_MEMORY_S, RUN_UPS_REMEMBERED * run_up_s)
+        steps_s = 0.0 if self.slip_rings is None else self.slip_rings.start_ends_s
+        return max(START_MEMORY_S, RUN_UPS_REMEMBERED * run_up_s, steps_s + SETTLING_S)
 
     @property
     def rated_values(self) -> Array:
@@ -258,22 +262,27 @@ class MotorPlant:
         first = ceil((closed_s - begin_s) * sample_rate_hz)
         if last <= first:
             return 0, np.zeros((3, 0)), np.zeros(0)
-        circuit = self.circuit(closed_s)
+        circuit = self.circuit(closed_s, closed_s)
         first_s = begin_s + first / sample_rate_hz
         state = np.zeros(circuit.loops + 2)
         if first_s > closed_s:
             # The contactor may close between samples: the time up to the first sample is simulated apart.
             self._simulate(circuit, state, closed_s, 2, 1 / (first_s - closed_s), step_rate_hz)
-        currents, speed = self._simulate(circuit, state, first_s, last - first, sample_rate_hz, step_rate_hz)
+        currents, speed = np.zeros((3, last - first)), np.zeros(last - first)
+        steps = sections(self.slip_rings, first_s - closed_s, last - first, sample_rate_hz)
+        for closing_s, step, next_step in steps:
+            circuit = self.circuit(closed_s + closing_s, closed_s)
+            from_s, here = first_s + step / sample_rate_hz, slice(step, next_step + 1)
+            currents[:, here], speed[here] = self._simulate(
+                circuit, state, from_s, next_step - step + 1, sample_rate_hz, step_rate_hz
+            )
         seen = max(0, -first)
         return max(0, first), currents[:, seen:], speed[seen:]
 
     def start_up(self, start_s: float, duration_s: float, sample_rate_hz: float) -> Operation:
-        """Return a direct start from rest; the voltage comes at `start_s`."""
-        circuit = self.circuit(start_s)
+        """Return a start from rest; the voltage comes at `start_s`."""
         samples = round(duration_s * sample_rate_hz)
-        rest = np.zeros(circuit.loops + 2)
-        currents, speed = self._simulate(circuit, rest, start_s, samples, sample_rate_hz, STEP_RATE_HZ)
+        _, currents, speed = self._from_rest(start_s, start_s, samples, sample_rate_hz, STEP_RATE_HZ)
         times = start_s + np.arange(samples) / sample_rate_hz
         return Operation(currents, self.supply.phase_voltages(times), speed)
 
@@ -291,15 +300,18 @@ class MotorPlant:
             return value_at(self.broken_bars, time_s)
         return self.broken_bars
 
-    def rotor(self, time_s: float) -> RotorLoops:
-        """Return the rotor's loops at one moment."""
+    def rotor(self, time_s: float, closed_s: float = -inf) -> RotorLoops:
+        """Return the rotor's loops at one moment, the contactor having closed at another."""
         parameters, broken = self.motor.parameters, self.broken_share(time_s)
+        if self.slip_rings is not None:
+            outside = self.slip_rings.added_resistance(time_s, time_s - closed_s)
+            return replace(three_coils(parameters), outside=outside)
         if broken == 0:
             return three_coils(parameters)
         return cage_loops(parameters, self.motor.nameplate.pole_pairs, self.cage, broken)
 
-    def circuit(self, time_s: float) -> WindingCircuit:
-        """Return the winding circuit at one moment; a window uses that of its start."""
+    def circuit(self, time_s: float, closed_s: float = -inf) -> WindingCircuit:
+        """Return the winding circuit at one moment, the contactor having closed at another; see `rotor`."""
         line_ohm = [0.0, 0.0, 0.0]
         if self.joint is not None:
             line_ohm[self.joint.phase] = self.joint.resistance_ohm(time_s)
@@ -307,7 +319,7 @@ class MotorPlant:
             self.motor.parameters,
             self.motor.nameplate.connection,
             self.fault_at(time_s),
-            rotor=self.rotor(time_s),
+            rotor=self.rotor(time_s, closed_s),
             resistance_factors=self.resistance_factors(time_s),
             line_resistance_ohm=(line_ohm[0], line_ohm[1], line_ohm[2]),
         )
@@ -358,36 +370,18 @@ class MotorPlant:
         return circuit.line_currents(currents), speed
 
     def _running_state(self, circuit: WindingCircuit, time_s: float) -> Array:
-        """Estimate a state close enough to settle from: no-load fluxes, and slip in proportion to torque."""
-        nameplate = self.motor.nameplate
-        w = 2 * np.pi * self.supply.frequency(time_s)
-        quarter_cycle_ago = np.array([time_s - np.pi / 2 / w])
-        flux = circuit.drive @ self.supply.phase_voltages(quarter_cycle_ago)[:, 0] / w
-        stator = np.flatnonzero(circuit.drive.any(axis=1))
-        angle = self._rotor_angle(time_s)
-        inductance = circuit.inductance(angle)
-        currents = np.zeros(circuit.loops)
-        currents[stator] = np.linalg.solve(inductance[np.ix_(stator, stator)], flux[stator])
+        """Estimate a state close enough to settle from."""
+        load_level, angle = self.load.level_at(time_s), self._rotor_angle(time_s)
+        return self._running.state(circuit, time_s, load_level=load_level, angle=angle)
 
-        pull = self._torque_over_slip(self.supply.frequency(time_s))
-        slip = self.load.level_at(time_s) * nameplate.rated_torque_Nm / pull
-        speed = self.supply.direction * (1 - slip) * w / nameplate.pole_pairs
-        return np.concatenate((inductance @ currents, [speed, angle]))
+    @property
+    def _running(self) -> RunningMotor:
+        return RunningMotor(self.motor, self.supply, self.slip_rings)
 
     def _rotor_angle(self, time_s: float) -> float:
         """Return an electrical angle of the running rotor: any of a turn of the shaft, always the same."""
         random = np.random.default_rng([self.seed, round(time_s * 1e6) % 2**63, _OF_ROTOR])
         return self.motor.nameplate.pole_pairs * float(random.uniform(0.0, 2 * np.pi))
-
-    def _torque_over_slip(self, frequency_Hz: float) -> float:
-        """Return the torque over the slip where this is small [N m]."""
-        w = 2 * np.pi * frequency_Hz
-        pole_pairs, R_r = self.motor.nameplate.pole_pairs, self.motor.parameters.rotor_resistance_ohm
-        return 3 * pole_pairs * self._winding_voltage() ** 2 / (w * R_r)
-
-    def _winding_voltage(self) -> float:
-        star = self.motor.nameplate.connection is Connection.STAR
-        return self.supply.line_voltage_V / sqrt(3) if star else self.supply.line_voltage_V
 
 
 def rated_current(motor: Motor) -> float:

@@ -31,12 +31,15 @@ class RotorLoops:
         Resistance [ohm], at the temperature of the parameters.
     axes : ndarray, shape (2, m)
         Share of each loop's field on the rotor's two axes; (1, 0) is a coil of a phase's turns on the first.
+    outside : ndarray, shape (m, m), optional
+        Resistance at the ends of a wound rotor, which does not warm up with it [ohm].
     """
 
     leakage: Matrix
     gap: Matrix
     resistance: Matrix
     axes: Matrix
+    outside: Matrix | None = None
 
 
 def three_coils(parameters: MachineParameters) -> RotorLoops:

@@ -160,6 +160,8 @@ def winding_circuit(
         resistance_factors.stator * parameters.stator_resistance_ohm * own,
         resistance_factors.rotor * rotor.resistance,
     )
+    if rotor.outside is not None:
+        resistance[stator:, stator:] += rotor.outside
     if fault is not None:
         resistance[stator_loops, stator_loops] += fault.resistance_ohm
     resistance += loop_drive @ np.diag(line_resistance_ohm) @ loop_drive.T

@@ -84,6 +84,7 @@ class RelayConfiguration:
             "joint_ohm": 0.0 if plant.joint is None else plant.joint.resistance_ohm(time_s),
             "broken_bars": plant.broken_share(time_s) * plant.cage.bars,
             "bars": plant.cage.bars,
+            **_at_slip_rings(plant, time_s),
             "eccentricity": asdict(plant.eccentricity),
             "pulsations": [
                 {name: value for name, value in asdict(pulsation).items() if value}
@@ -95,3 +96,11 @@ class RelayConfiguration:
                 if gain or delay_s
             },
         }
+
+
+def _at_slip_rings(plant: MotorPlant, time_s: float) -> dict[str, object]:
+    """Return the resistances at the slip rings of a wound rotor, of its own turns."""
+    rings = plant.slip_rings
+    if rings is None:
+        return {}
+    return {"external_rotor_ohm": rings.outside_ohm(time_s), "rotor_contacts_ohm": list(rings.contacts_ohm)}

@@ -14,6 +14,7 @@ from ied_sim.motor.fault import FaultCourse
 from ied_sim.motor.joint import JointCourse
 from ied_sim.motor.plant import rated_current
 from ied_sim.motor.sensors import CHANNELS, ChannelChange, Sensors
+from ied_sim.motor.slip_rings import SlipRings, turns_ratio
 from ied_sim.motor.warming import ALUMINIUM_PER_K, COPPER_PER_K, Warming
 from ied_sim.scenario.moments import MomentTable, require_rising
 from ied_sim.toml_tables import Table
@@ -121,6 +122,57 @@ class CageTable(Table):
         if self.timeline is None:
             return ((0.0, self.broken or 0.0),)
         return tuple((point.time_s, point.broken) for point in self.timeline)
+
+
+class RotorPointTable(MomentTable):
+    """One point of the course of the resistance at the slip rings."""
+
+    external_ohm: Resistance
+
+
+class StartStepTable(Table):
+    """One step of a start's resistance at the slip rings."""
+
+    after_s: Annotated[float, Field(ge=0, le=600)]
+    external_ohm: Resistance
+
+
+class RotorTable(Table):
+    """What is connected to the slip rings of a wound rotor, in ohm of the rotor's own phases."""
+
+    external_ohm: Resistance | None = None
+    timeline: Annotated[tuple[RotorPointTable, ...], Field(min_length=1)] | None = None
+    contacts_ohm: tuple[Resistance, Resistance, Resistance] = (0.0, 0.0, 0.0)
+    start: tuple[StartStepTable, ...] = ()
+    start_ends_s: Annotated[float, Field(ge=0, le=600)] = 0.0
+
+    @model_validator(mode="after")
+    def _is_one_course_in_time(self) -> Self:
+        if self.external_ohm is not None and self.timeline is not None:
+            raise ValueError("give either external_ohm or timeline")
+        require_rising([point.time_s for point in self.timeline or ()], "timeline")
+        return self
+
+    @model_validator(mode="after")
+    def _start_comes_to_an_end(self) -> Self:
+        times = [step.after_s for step in self.start]
+        require_rising(times, "start")
+        if self.start and (times[0] != 0 or times[-1] >= self.start_ends_s):
+            raise ValueError("start begins with after_s = 0, and its last step lies before start_ends_s")
+        return self
+
+    def slip_rings(self, motor: Motor) -> SlipRings:
+        """Return the slip rings. Raises ValueError where the motor has a cage."""
+        if motor.wound_rotor is None:
+            raise ValueError('the motor has a cage: give kind = "wound-rotor" under [motor.nameplate]')
+        points = tuple((point.time_s, point.external_ohm) for point in self.timeline or ())
+        return SlipRings(
+            turns_ratio(motor, motor.wound_rotor.open_circuit_voltage_V),
+            self.contacts_ohm,
+            points or self.external_ohm or 0.0,
+            tuple((step.after_s, step.external_ohm) for step in self.start),
+            self.start_ends_s,
+        )
 
 
 class EccentricityTable(Table):

@@ -16,13 +16,14 @@ from ied_sim.errors import ScenarioError
 from ied_sim.motor.cage import Cage, cage_loops
 from ied_sim.motor.contactor import Contactor
 from ied_sim.motor.plant import HIGHEST_STEP_RATE_HZ, RATE_PER_STEP, MotorPlant
+from ied_sim.motor.slip_rings import SlipRings
 from ied_sim.motor.supply import Supply
 from ied_sim.motor.windings import highest_fault_resistance
 from ied_sim.profiles.profile import DEFAULT, Profile, Record, Triggers, read_profile
 from ied_sim.relay.configuration import Access, RelayConfiguration
 from ied_sim.relay.event_recorder import RecorderSettings
 from ied_sim.relay.plant_clock import REAL_TIME, ClockSettings
-from ied_sim.scenario.motor_tables import SensorsTable
+from ied_sim.scenario.motor_tables import RotorTable, SensorsTable
 from ied_sim.scenario.supply_tables import BusTable, SupplyTable
 from ied_sim.scenario.tables import FileTable, LoadTable, MotorTable, RecorderTable, TriggersTable
 from ied_sim.toml_tables import first_error, read_table
@@ -176,6 +177,7 @@ def _relay_scenario(
             broken_bars=section.cage.course(cage),
             cage=cage,
             eccentricity=section.eccentricity.eccentricity(),
+            slip_rings=_slip_rings(path, section, motor),
             contactor=Contactor(
                 open_at_first=section.stopped, opens_s=inf if section.stop is None else section.stop.time_s
             ),
@@ -207,6 +209,23 @@ def _cage(path: Path, section: MotorTable, motor: Motor) -> Cage:
             found=str(error),
         ) from error
     return cage
+
+
+def _slip_rings(path: Path, section: MotorTable, motor: Motor) -> SlipRings | None:
+    """Return the slip rings of a wound rotor, which has no cage; shorted ones where nothing is said."""
+    where = f"[motor {section.ied}]"
+    if section.rotor is None and motor.wound_rotor is None:
+        return None
+    if motor.wound_rotor is not None and "cage" in section.model_fields_set:
+        raise ScenarioError(
+            path, f"{where} cage", expected="nothing: the motor has a wound rotor", found="a table"
+        )
+    try:
+        return (section.rotor or RotorTable()).slip_rings(motor)
+    except ValueError as error:
+        raise ScenarioError(
+            path, f"{where} rotor", expected="slip rings of a wound rotor", found=str(error)
+        ) from error
 
 
 def _access(path: Path, section: MotorTable) -> Access:

@@ -20,6 +20,7 @@ from ied_sim.scenario.motor_tables import (
     EccentricityTable,
     FaultTable,
     JointTable,
+    RotorTable,
     SensorsTable,
     WarmingTable,
 )
@@ -214,6 +215,7 @@ class MotorTable(Table):
     fault: FaultTable | None = None
     joint: JointTable | None = None
     cage: CageTable = CageTable()
+    rotor: RotorTable | None = None
     eccentricity: EccentricityTable = EccentricityTable()
     warming: WarmingTable | None = None
     sensors: SensorsTable = SensorsTable()

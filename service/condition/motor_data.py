@@ -12,6 +12,7 @@ from core.machines.parameters import (
     Nameplate,
     ParametersSource,
     ParameterTolerances,
+    WoundRotor,
 )
 from core.machines.sensors import SensorClass
 from service.storage.records import MotorVersion
@@ -19,13 +20,17 @@ from service.storage.records import MotorVersion
 
 def document_of(motor: Motor) -> dict[str, Any]:
     """Return all that a motor's condition depends on."""
-    return {
+    document = {
         "nameplate": {k: v for k, v in asdict(motor.nameplate).items() if k != "rotor_slots"},
         "parameters": asdict(motor.parameters),
         "tolerances": {"source": str(motor.parameters_source), **asdict(motor.tolerances)},
         "limits": asdict(motor.limits),
         "sensors": asdict(motor.sensors),
     }
+    if motor.wound_rotor is not None:
+        rotor = asdict(motor.wound_rotor)
+        document["wound_rotor"] = {**rotor, "external_resistance_ohm": [*rotor["external_resistance_ohm"]]}
+    return document
 
 
 def motor_of(motor: Motor, document: Mapping[str, Any]) -> Motor:
@@ -44,7 +49,16 @@ def motor_of(motor: Motor, document: Mapping[str, Any]) -> Motor:
         parameters=MachineParameters(**document["parameters"]),
         parameters_source=source,
         tolerances=ParameterTolerances(**tolerances),
+        wound_rotor=_wound_rotor(document.get("wound_rotor")),
     )
+
+
+def _wound_rotor(table: Mapping[str, Any] | None) -> WoundRotor | None:
+    """Return the rotor's winding; None of a cage, of which documents say nothing."""
+    if table is None:
+        return None
+    least, most = table["external_resistance_ohm"]
+    return WoundRotor(**{**table, "external_resistance_ohm": (least, most)})
 
 
 def motor_known(name: str, document: Mapping[str, Any]) -> Motor:

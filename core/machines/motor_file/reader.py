@@ -2,7 +2,7 @@
 
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from math import isnan, sqrt
 from pathlib import Path
 
@@ -14,17 +14,33 @@ from core.machines.motor_file.unit_slips import likely_slip
 from core.machines.parameters import (
     ChannelNames,
     Limits,
+    MachineKind,
     MachineParameters,
     Motor,
     Nameplate,
     ParametersSource,
     StartLimits,
     Transformers,
+    WoundRotor,
 )
 from core.machines.sensors import SensorClass
 from core.machines.typical import tolerances_of, typical_parameters
+from core.quantity_text import plain
 
-TABLES = ("nameplate", "parameters", "intervals", "channels", "limits", "sensors", "transformers")
+TABLES = (
+    "nameplate",
+    "parameters",
+    "intervals",
+    "channels",
+    "limits",
+    "sensors",
+    "transformers",
+    "rotor_circuit",
+)
+OF_A_WOUND_ROTOR = ("rotor_voltage_V", "rotor_current_A", "rated_speed_rpm")
+"""Keys of the nameplate that a cage does not have."""
+BELONGS_TO_A_WOUND_ROTOR = 'nothing, or kind = "wound-rotor" under [nameplate]'
+
 PARAMETERS = tuple(field.name for field in fields(MachineParameters))
 DEFAULT_SENSORS = SensorClass()
 FAULT_LEVELS = (0.0, 0.2)
@@ -57,6 +73,8 @@ class Plate:
         95 % intervals of parameters, by name.
     start_limits : StartLimits, optional
         What its starts may do to the motor.
+    wound_rotor : WoundRotor or None, optional
+        The rotor's winding; None of a motor with a cage.
     """
 
     name: str
@@ -69,11 +87,12 @@ class Plate:
     source: ParametersSource = ParametersSource.GIVEN
     intervals: dict[str, tuple[float, float]] = field(default_factory=dict)
     start_limits: StartLimits = field(default_factory=StartLimits)
+    wound_rotor: WoundRotor | None = None
 
     @property
     def motor(self) -> Motor:
         """The motor, with typical parameters where the file has none."""
-        parameters = self.parameters or typical_parameters(self.nameplate).parameters
+        parameters = self.parameters or typical_parameters(self.nameplate, self.wound_rotor).parameters
         return Motor(
             self.name,
             self.nameplate,
@@ -85,6 +104,7 @@ class Plate:
             self.source,
             tolerances_of(parameters, self.source, self.intervals),
             self.start_limits,
+            self.wound_rotor,
         )
 
 
@@ -137,8 +157,8 @@ def motor_from_table(
 ) -> Motor:
     """Make a motor from the tables of its file.
 
-    [nameplate] must be there; [parameters], [intervals], [channels], [limits], [sensors] and [transformers]
-    are optional. A motor without [parameters] has those that are typical of its rating.
+    [nameplate] must be there; [parameters], [intervals], [channels], [limits], [sensors], [transformers] and
+    [rotor_circuit] are optional. A motor without [parameters] has those that are typical of its rating.
 
     Parameters
     ----------
@@ -248,6 +268,7 @@ def _plate(
     nameplate = MotorTable(table, "nameplate", source, errors)
     machine = MotorTable(table, "parameters", source, errors) if "parameters" in table else None
     intervals = MotorTable(table, "intervals", source, errors, optional=True)
+    rotor_circuit = MotorTable(table, "rotor_circuit", source, errors, optional=True)
     limits = MotorTable(table, "limits", source, errors, optional=True)
     channels = MotorTable(table, "channels", source, errors, optional=True)
     sensors = MotorTable(table, "sensors", source, errors, optional=True)
@@ -280,8 +301,9 @@ def _plate(
         source=_source(machine, has_intervals=bool(ends)),
         intervals=ends,
         start_limits=_start_limits(limits, rated),
+        wound_rotor=_wound_rotor(nameplate, rotor_circuit, rated),
     )
-    for section in (nameplate, machine, intervals, limits, channels, sensors, transformers):
+    for section in (nameplate, machine, intervals, rotor_circuit, limits, channels, sensors, transformers):
         if section is not None:
             section.end()
     return plate
@@ -301,6 +323,34 @@ def _nameplate(table: MotorTable) -> Nameplate:
         pole_pairs=table.count("pole_pairs", plausibility.MOST_POLE_PAIRS),
         connection=table.connection("connection"),
         rotor_slots=table.optional_count("rotor_slots", plausibility.MOST_ROTOR_SLOTS),
+    )
+
+
+def _wound_rotor(plate: MotorTable, circuit: MotorTable, rated: Nameplate) -> WoundRotor | None:
+    """Return the rotor's winding; None of a cage, to which none of its keys belongs."""
+    if plate.kind("kind") is MachineKind.CAGE:
+        plate.refuse_all(OF_A_WOUND_ROTOR, BELONGS_TO_A_WOUND_ROTOR)
+        circuit.refuse_all(("external_resistance_ohm",), BELONGS_TO_A_WOUND_ROTOR)
+        return None
+    voltage_V = plate.number("rotor_voltage_V", plausibility.ROTOR_VOLTAGE_V, unit="V")
+    least, most = plausibility.ROTOR_POWER
+    base_A = rated.rated_power_W / (sqrt(3.0) * voltage_V)
+    synchronous_rpm = 60.0 * rated.rated_frequency_Hz / rated.pole_pairs
+    slowest, fastest = plausibility.RATED_SPEED
+    rotor = WoundRotor(
+        open_circuit_voltage_V=voltage_V,
+        rated_current_A=plate.number(
+            "rotor_current_A",
+            (least * base_A, most * base_A),
+            f"{least:g} to {most:g} times rated_power_W / (sqrt(3) rotor_voltage_V) = {plain(base_A)} A",
+        ),
+        rated_speed_rpm=plate.optional_number(
+            "rated_speed_rpm", (slowest * synchronous_rpm, fastest * synchronous_rpm), unit="rpm"
+        ),
+    )
+    most_ohm = plausibility.EXTERNAL_RESISTANCE * rotor.standstill_impedance_ohm
+    return replace(
+        rotor, external_resistance_ohm=circuit.span("external_resistance_ohm", most_ohm, "ohm a phase")
     )
 
 

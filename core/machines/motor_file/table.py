@@ -6,7 +6,7 @@ from pathlib import Path
 
 from core.error_words import nearest, shown
 from core.machines.motor_file.error import MotorFileError
-from core.machines.parameters import Connection, ParametersSource
+from core.machines.parameters import Connection, MachineKind, ParametersSource
 from core.quantity_text import plain
 
 ROUNDING = 1e-6
@@ -225,6 +225,70 @@ class MotorTable:
         except ValueError:
             self._refuse(key, '"star" or "delta"', value)
             return Connection.STAR
+
+    def kind(self, key: str) -> MachineKind:
+        """Take the kind of machine.
+
+        Parameters
+        ----------
+        key : str
+            Key of the value.
+
+        Returns
+        -------
+        MachineKind
+            The kind, a cage by default.
+        """
+        value = self._take(key, MachineKind.CAGE.value)
+        try:
+            return MachineKind(str(value))
+        except ValueError:
+            self._refuse(key, " or ".join(f'"{kind}"' for kind in MachineKind), value)
+            return MachineKind.CAGE
+
+    def span(self, key: str, most: float, unit: str) -> tuple[float, float]:
+        """Take a number, or the least and the largest that it may be, from zero on.
+
+        Parameters
+        ----------
+        key : str
+            Key of the value.
+        most : float
+            Largest number; one that is not known (nan) is not looked at.
+        unit : str
+            Unit of the value.
+
+        Returns
+        -------
+        tuple of float
+            Least and largest; zero by default.
+        """
+        value = self._take(key, 0.0)
+        ends = value if isinstance(value, list) else [value, value]
+        if (
+            len(ends) != 2
+            or any(isinstance(end, bool) or not isinstance(end, int | float) for end in ends)
+            or not 0.0 <= ends[0] <= ends[1] < inf
+            or ends[1] > most * (1.0 + ROUNDING)
+        ):
+            limit = "" if isnan(most) else f", 0 to {plain(most, 6)} {unit}"
+            self._refuse(key, f"a number, or [least, largest]{limit}", value)
+            return 0.0, 0.0
+        return float(ends[0]), float(ends[1])
+
+    def refuse_all(self, keys: tuple[str, ...], expected: str) -> None:
+        """Refuse keys that have no place here, wherever they are given.
+
+        Parameters
+        ----------
+        keys : tuple of str
+            The keys.
+        expected : str
+            Where they belong.
+        """
+        for key in keys:
+            if (value := self._take(key, None)) is not None:
+                self._refuse(key, expected, value)
 
     def source(self, key: str, default: ParametersSource) -> ParametersSource:
         """Take where the parameters come from.

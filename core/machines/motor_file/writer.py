@@ -9,7 +9,14 @@ from pathlib import Path
 from core.error_words import one_line
 from core.machines.motor_file.error import MotorFileError
 from core.machines.motor_file.reader import motor_from_table
-from core.machines.parameters import ChannelNames, Limits, Motor, ParametersSource
+from core.machines.parameters import (
+    ChannelNames,
+    Limits,
+    MachineKind,
+    Motor,
+    ParametersSource,
+    WoundRotor,
+)
 from core.machines.sensors import SensorClass
 
 Interval = tuple[float, float]
@@ -91,6 +98,7 @@ def motor_text(
         f"pole_pairs = {plate.pole_pairs}",
         f"connection = {_text(plate.connection.value)}",
         *([] if plate.rotor_slots is None else [f"rotor_slots = {plate.rotor_slots}"]),
+        *_wound_rotor(motor.wound_rotor),
         "",
         "[parameters]",
     ]
@@ -102,6 +110,7 @@ def motor_text(
     if intervals:
         lines += ["", "[intervals]  # 95 %, [low, high]"]
         lines += [f"{name} = [{_number(low)}, {_number(high)}]" for name, (low, high) in intervals.items()]
+    lines += _rotor_circuit(motor.wound_rotor)
     lines += _channels(motor.channels)
     lines += _limits(motor)
     if motor.sensors != SensorClass():
@@ -112,6 +121,26 @@ def motor_text(
         lines += ["", "[transformers]"]
         lines += [f"{name} = {_number(ratio)}" for name, ratio in ratios.items()]
     return "\n".join(lines) + "\n"
+
+
+def _wound_rotor(rotor: WoundRotor | None) -> list[str]:
+    if rotor is None:
+        return []
+    speed = [] if rotor.rated_speed_rpm is None else [f"rated_speed_rpm = {_number(rotor.rated_speed_rpm)}"]
+    return [
+        f"kind = {_text(MachineKind.WOUND_ROTOR.value)}",
+        f"rotor_voltage_V = {_number(rotor.open_circuit_voltage_V)}",
+        f"rotor_current_A = {_number(rotor.rated_current_A)}",
+        *speed,
+    ]
+
+
+def _rotor_circuit(rotor: WoundRotor | None) -> list[str]:
+    if rotor is None or rotor.external_resistance_ohm == (0.0, 0.0):
+        return []
+    low, high = rotor.external_resistance_ohm
+    value = _number(low) if low == high else f"[{_number(low)}, {_number(high)}]"
+    return ["", "[rotor_circuit]", f"external_resistance_ohm = {value}"]
 
 
 def _limits(motor: Motor) -> list[str]:

@@ -17,7 +17,7 @@ from service.storage.repository.audit.values import changed
 from service.storage.repository.conditions.fold_marks import EARLIEST_NS, mark
 from service.storage.repository.sessions import Sessions, found, record_of
 
-MACHINE = ("nameplate", "parameters", "tolerances")
+MACHINE = ("nameplate", "parameters", "tolerances", "wound_rotor")
 """Tables of the motors file that tell which machine it is: an edit counts from then on."""
 TYPICAL = "typical"
 """Source of parameters that were never measured. Those that replace them have always been the motor's."""
@@ -109,7 +109,7 @@ def _edits(before: Mapping[str, Any], after: Mapping[str, Any]) -> Iterator[str]
     for table in MACHINE:
         if table not in before:
             continue
-        for name, value in after[table].items():
+        for name, value in after.get(table, {}).items():
             old = before[table].get(name)
             if old != value:
                 yield f"{name} {value} instead of {old}"

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from core.machines.parameters import Connection, Motor
+from core.machines.parameters import Connection, Motor, WoundRotor
 from core.quantity_text import with_unit
 from service.condition.motor_data import motor_known
 from service.condition.parameter_sources import SOURCES
@@ -65,6 +65,21 @@ def _rated(motor: Motor) -> list[Fact]:
         Fact("Rated frequency", with_unit(plate.rated_frequency_Hz, "Hz", DIGITS), file),
         Fact("Poles", f"{2 * plate.pole_pairs}, {speed:.0f} rpm without slip", file),
         Fact("Connection", "delta" if plate.connection is Connection.DELTA else "star", file),
+        *_of_rotor(motor.wound_rotor),
+    ]
+
+
+def _of_rotor(rotor: WoundRotor | None) -> list[Fact]:
+    if rotor is None:
+        return []
+    volts = with_unit(rotor.open_circuit_voltage_V, "V", DIGITS)
+    rated = f"wound, {volts}, {with_unit(rotor.rated_current_A, 'A', DIGITS)}"
+    least, most = rotor.external_resistance_ohm
+    known = with_unit(most, "ohm", DIGITS)
+    between = known if least == most else f"{with_unit(least, 'ohm', DIGITS)} to {known}, unknown"
+    return [
+        Fact("Rotor", rated, "motors file"),
+        Fact("At the slip rings while running", between if most > 0.0 else "shorted", "motors file"),
     ]
 
 

@@ -90,7 +90,7 @@ def test_a_fault_of_the_relay_alone_needs_no_motor(tmp_path: Path) -> None:
 
 def test_the_documented_example_is_a_scenario(tmp_path: Path) -> None:
     page = (REPOSITORY / "docs" / "reference" / "scenario.md").read_text(encoding="utf-8")
-    example, timeline = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
+    example, timeline, slip_rings = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
     relay = read_scenario(write(tmp_path, example))["A2_SEL710"]
     assert relay.plant.supply.harmonics[0].order == 5
     assert relay.plant.sensors.current_delay_s == pytest.approx(41e-6)
@@ -108,6 +108,8 @@ def test_the_documented_example_is_a_scenario(tmp_path: Path) -> None:
     assert read_clock(write(tmp_path, MINIMAL)) == ClockSettings()
     developing = read_scenario(write(tmp_path, MINIMAL + timeline))["R1"]
     assert developing.truth(0.0) == HEALTHY
+    wound = read_scenario(write(tmp_path, WOUND + slip_rings))["R1"]
+    assert wound.truth(0.0)["rotor_contacts_ohm"] == [0.02, 0.0, 0.0]
     assert developing.truth(900.0)["mu_f"] == pytest.approx(8.4 / (0.1 / 0.08**2 + 8.4 / 0.08))
 
 
@@ -320,3 +322,40 @@ def test_a_relay_may_keep_local_time(tmp_path: Path) -> None:
 def test_a_missing_file_is_named(tmp_path: Path) -> None:
     with pytest.raises(ScenarioError, match=r"nowhere\.toml: file: expected a readable file"):
         read_scenario(tmp_path / "nowhere.toml")
+
+
+WOUND = MINIMAL.replace(
+    'connection = "star"',
+    'connection = "star"\nkind = "wound-rotor"\nrotor_voltage_V = 100\nrotor_current_A = 5.5',
+)
+
+
+def test_a_wound_rotor_has_slip_rings(tmp_path: Path) -> None:
+    path = tmp_path / "scenario.toml"
+    table = "[motor.rotor]\nexternal_ohm = 2\nstart_ends_s = 1.5\nstart = [{ after_s = 0, external_ohm = 9 }]"
+    path.write_text(WOUND + table, encoding="utf-8")
+    configuration = read_scenario(path)["R1"]
+    rings = configuration.plant.slip_rings
+    assert rings is not None
+    assert [rings.outside_ohm(100.0, since_s) for since_s in (0.0, 1.4, 1.6)] == [9.0, 9.0, 2.0]
+    assert rings.turns_ratio == pytest.approx(380 / 100, rel=0.08)
+    assert configuration.truth(0.0)["external_rotor_ohm"] == 2.0
+
+
+@pytest.mark.parametrize(
+    ("motor", "table", "words"),
+    [
+        (MINIMAL, "[motor.rotor]\nexternal_ohm = 1\n", "wound-rotor"),
+        (WOUND, "[motor.cage]\nbroken = 1\n", "wound rotor"),
+        (WOUND, "[motor.rotor]\nstart = [{ after_s = 1, external_ohm = 9 }]\nstart_ends_s = 2\n", "after_s"),
+        (WOUND, "[motor.rotor]\nexternal_ohm = 1\ntimeline = [{ at_s = 0, external_ohm = 1 }]\n", "either"),
+    ],
+)
+def test_rotor_tables_that_mean_nothing_are_refused(
+    tmp_path: Path, motor: str, table: str, words: str
+) -> None:
+    path = tmp_path / "scenario.toml"
+    path.write_text(motor + table, encoding="utf-8")
+    with pytest.raises(ScenarioError) as refused:
+        read_scenario(path)
+    assert words in f"{refused.value.expected} {refused.value.found}"
