@@ -11,7 +11,7 @@ from core.machines.parameters import Motor
 from core.machines.steady_state import ComplexArray
 from core.machines.wound_rotor import resistance_ratios
 from core.rotor.baseband import Baseband
-from core.rotor.cage_leakage import OF_A_CAGE, OF_A_WINDING, without_leakage
+from core.rotor.cage_leakage import LEAST, MOST, USUAL, without_leakage
 from core.rotor.rotor_circuit import RotorLines, rotor_lines
 from core.rotor.running_point import errors, running_point
 from core.rotor.sidebands import Lines, fit_lines, without_lines
@@ -199,7 +199,8 @@ def _measured(record: _Record, line: Lines, kappa: Array) -> Asymmetry:
     radial = sqrt((noise + leak**2) / 2.0)
     spread = NORMAL_95 * hypot(radial, scale)
     current = abs(baseband.current.mean())
-    leakage = OF_A_CAGE if record.motor.wound_rotor is None else OF_A_WINDING
+    # A bad contact of a wound rotor joins no loops, as a broken bar does.
+    usual, least, most = (USUAL, LEAST, MOST) if record.motor.wound_rotor is None else (0.0, 0.0, 0.0)
     resistive = partial(
         without_leakage,
         slip_over_resistance=running_point(baseband, record.motor).slip_over_resistance,
@@ -207,10 +208,10 @@ def _measured(record: _Record, line: Lines, kappa: Array) -> Asymmetry:
     )
     return Asymmetry(
         ratio=float(kappa[0]),
-        value=resistive(abs(value), factor=leakage.usual),
+        value=resistive(abs(value), factor=usual),
         interval=(
-            resistive(abs(value) - spread, factor=leakage.most),
-            resistive(abs(value) + spread, factor=leakage.least),
+            resistive(abs(value) - spread, factor=most),
+            resistive(abs(value) + spread, factor=least),
         ),
         threshold=threshold,
         detection_limit=threshold + NINE_IN_TEN * radial,

@@ -10,27 +10,12 @@ motors of 0.8 to 250 kW with 28 to 56 bars, rings of 0.1 to 0.5 of the resistanc
 1.2. Bars that are not insulated from the iron have less. docs/evidence/rotor.md has the table.
 """
 
-from typing import Final, NamedTuple
-
-
-class LeakageFactors(NamedTuple):
-    """The factor c of usual rotors of a kind, and its ends."""
-
-    usual: float
-    least: float
-    most: float
-
-
-OF_A_CAGE: Final = LeakageFactors(1.2, 0.0, 2.4)
-OF_A_WINDING: Final = LeakageFactors(0.0, 0.0, 0.0)
-"""A bad contact of a wound rotor joins no loops."""
+USUAL, LEAST, MOST = 1.2, 0.0, 2.4
+"""The factor c of usual cages, and its ends."""
 
 
 def without_leakage(
-    asymmetry: float,
-    slip_over_resistance: float,
-    magnetising_inductance_H: float,
-    factor: float = OF_A_CAGE.usual,
+    asymmetry: float, slip_over_resistance: float, magnetising_inductance_H: float, factor: float = USUAL
 ) -> float:
     """Return the asymmetry of the resistance alone.
 
@@ -42,8 +27,8 @@ def without_leakage(
         lambda [1/H].
     magnetising_inductance_H : float
         L_m [H].
-    factor : float, optional
-        c, by default that of usual cages.
+    factor : float, default USUAL
+        c.
 
     Returns
     -------
