@@ -13,7 +13,7 @@ from service.plant import AveragingStep, MeteredQuantity
 from service.storage.engine import one_at_a_time
 from service.storage.models import MeasurementRow, MotorRow
 from service.storage.records import Cursor, DeletedRows, Measurement, Page, Sample
-from service.storage.repository.sessions import Order, Sessions, found, page_of
+from service.storage.repository.sessions import Order, Sessions, found, page_of, within
 
 LATENESS_NS = 120 * NANOSECONDS_PER_SECOND
 """A mean is made when its interval ended this long ago: samples may be on their way until then."""
@@ -124,10 +124,7 @@ class MeasurementRows(Sessions):
         """Return a motor's measurements, oldest first, from_ns <= time < to_ns. Raises NotFoundError."""
         columns = (MeasurementRow.time_ns, MeasurementRow.samples, *_COLUMNS.values())
         query = select(*columns).where(MeasurementRow.motor == motor, MeasurementRow.step_s == step_s)
-        if from_ns is not None:
-            query = query.where(MeasurementRow.time_ns >= from_ns)
-        if to_ns is not None:
-            query = query.where(MeasurementRow.time_ns < to_ns)
+        query = query.where(*within(MeasurementRow.time_ns, from_ns, to_ns))
         order: Order = [MeasurementRow.time_ns]
         with self._read() as session:
             found(session, MotorRow, motor, "motor")

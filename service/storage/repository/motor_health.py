@@ -31,7 +31,7 @@ from service.storage.records import (
 )
 from service.storage.repository.conditions.conditions import conditions_of
 from service.storage.repository.overviews.fleet import latest_figures_of
-from service.storage.repository.sessions import Order, Sessions, columns_of, found, page_of, record_of
+from service.storage.repository.sessions import Order, Sessions, columns_of, found, page_of, record_of, within
 from service.storage.states import RecordingState
 
 Point = TypeVar("Point")
@@ -146,10 +146,7 @@ class MotorHealthRows(Sessions):
         query = select(*columns).where(
             DiagnosisRow.motor == motor, DiagnosisRow.current, DiagnosisRow.says_nothing.is_(False)
         )
-        if from_ns is not None:
-            query = query.where(DiagnosisRow.recorded_ns >= from_ns)
-        if to_ns is not None:
-            query = query.where(DiagnosisRow.recorded_ns < to_ns)
+        query = query.where(*within(DiagnosisRow.recorded_ns, from_ns, to_ns))
         order: Order = [DiagnosisRow.recorded_ns, DiagnosisRow.id]
         with self._read() as session:
             found(session, MotorRow, motor, "motor")

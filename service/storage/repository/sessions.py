@@ -133,6 +133,34 @@ def page_of(
     )
 
 
+def latest_of(
+    session: Session,
+    query: Select[*tuple[Any, ...]],
+    order: Order,
+    to_item: Callable[..., Item],
+    *,
+    limit: int,
+) -> tuple[Item, ...]:
+    """Return the last items of `query` in the order of unique `order` columns, in that order.
+
+    to_item: takes what the query selects, one argument each.
+    """
+    last = query.order_by(*(column.desc() for column in order)).limit(limit)
+    return tuple(to_item(*row) for row in reversed(session.execute(last).all()))
+
+
+def within(
+    time: InstrumentedAttribute[int], from_ns: int | None, to_ns: int | None
+) -> list[ColumnElement[bool]]:
+    """Return the conditions that from_ns <= time < to_ns; an end that is None is open."""
+    conditions = []
+    if from_ns is not None:
+        conditions.append(time >= from_ns)
+    if to_ns is not None:
+        conditions.append(time < to_ns)
+    return conditions
+
+
 def has_as_many(session: Session, query: Select[str], most: int) -> bool:
     """Return whether a query finds at least so many rows; what is beyond is not counted."""
     number = session.scalar(select(func.count()).select_from(query.limit(most).subquery()))

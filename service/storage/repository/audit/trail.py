@@ -13,7 +13,7 @@ from service.storage.models import AuditEntryRow, AuditForwardingRow, AuditHeadR
 from service.storage.records import Cursor, Page
 from service.storage.records.actors import Actor
 from service.storage.repository.audit.entries import note_change
-from service.storage.repository.sessions import Sessions, columns_of, page_of
+from service.storage.repository.sessions import Sessions, columns_of, page_of, within
 
 READ_AT_ONCE = 1000
 """So many entries are in memory when all are read."""
@@ -83,10 +83,7 @@ class AuditRows(Sessions):
             query = query.where(AuditEntryRow.action == action)
         if subject is not None:
             query = query.where(AuditEntryRow.subject == subject)
-        if from_ns is not None:
-            query = query.where(AuditEntryRow.time_ns >= from_ns)
-        if to_ns is not None:
-            query = query.where(AuditEntryRow.time_ns < to_ns)
+        query = query.where(*within(AuditEntryRow.time_ns, from_ns, to_ns))
         with self._read() as session:
             order = [AuditEntryRow.number]
             return page_of(session, query, order, AuditEntry, limit=limit, after=after, descending=True)

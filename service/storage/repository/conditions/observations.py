@@ -5,7 +5,7 @@ from dataclasses import fields
 from math import isfinite
 from typing import Any
 
-from sqlalchemy import delete, exists, func, select
+from sqlalchemy import Select, delete, exists, func, select
 from sqlalchemy.orm import Session
 
 from core.condition.observation import Observation
@@ -27,7 +27,7 @@ from service.storage.records import (
     ToObserve,
 )
 from service.storage.repository.conditions.fold_marks import mark_with_bus, resume
-from service.storage.repository.sessions import Order, Sessions, columns_of, found, page_of
+from service.storage.repository.sessions import Order, Sessions, columns_of, found, latest_of, page_of, within
 from service.storage.texts import storable
 
 PHASORS = (
@@ -64,6 +64,7 @@ OBSERVED = [
 ]
 """Columns of what a recording tells, without what is said from it on."""
 
+_ORDER: Order = (ObservationRow.time_ns, ObservationRow.recording_id)
 _POINT_FIELDS = [field.name for field in fields(ConditionPoint)]
 
 
@@ -87,28 +88,15 @@ class ObservationRows(Sessions):
 
         A record that is not folded yet is not there. Raises NotFoundError.
         """
-        query = select(*columns_of(ConditionPoint, ObservationRow)).where(
-            ObservationRow.motor == motor, ObservationRow.state.is_not(None)
-        )
-        if from_ns is not None:
-            query = query.where(ObservationRow.time_ns >= from_ns)
-        if to_ns is not None:
-            query = query.where(ObservationRow.time_ns < to_ns)
-        order: Order = [ObservationRow.time_ns, ObservationRow.recording_id]
+        query = _folded(motor).where(*within(ObservationRow.time_ns, from_ns, to_ns))
         with self._read() as session:
             found(session, MotorRow, motor, "motor")
-            return page_of(session, query, order, point, limit=limit, after=after)
+            return page_of(session, query, _ORDER, point, limit=limit, after=after)
 
     def latest_condition_points(self, motor: str, *, limit: int) -> tuple[ConditionPoint, ...]:
         """Return what was said from each of a motor's latest records on, oldest first."""
-        query = (
-            select(*columns_of(ConditionPoint, ObservationRow))
-            .where(ObservationRow.motor == motor, ObservationRow.state.is_not(None))
-            .order_by(ObservationRow.time_ns.desc(), ObservationRow.recording_id.desc())
-            .limit(limit)
-        )
         with self._read() as session:
-            return tuple(point(*row) for row in reversed(session.execute(query).all()))
+            return latest_of(session, _folded(motor), _ORDER, point, limit=limit)
 
     def motors_to_observe(self) -> tuple[str, ...]:
         """Return the motors that have recordings from before there were observations."""
@@ -262,6 +250,12 @@ def record_observation(values: Sequence[Any]) -> RecordObservation:
 
 def _of_row(row: ObservationRow) -> RecordObservation:
     return record_observation([getattr(row, column.name) for column in OBSERVED])
+
+
+def _folded(motor: str) -> Select[*tuple[Any, ...]]:
+    """Return the query of what was said from each record of a motor on that is folded."""
+    columns = columns_of(ConditionPoint, ObservationRow)
+    return select(*columns).where(ObservationRow.motor == motor, ObservationRow.state.is_not(None))
 
 
 def point(*values: Any) -> ConditionPoint:

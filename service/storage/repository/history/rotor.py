@@ -3,14 +3,14 @@
 from dataclasses import fields
 from typing import Any, Final
 
-from sqlalchemy import delete, select
+from sqlalchemy import Select, delete, select
 from sqlalchemy.orm import Session
 
 from core.rotor.finding import RotorFinding
 from core.rotor.trend import DatedFinding, RotorCondition, rotor_condition
 from service.storage.models import MotorRow, RotorFindingRow
 from service.storage.records import Cursor, Page, RotorEntry
-from service.storage.repository.sessions import Order, Sessions, found, page_of
+from service.storage.repository.sessions import Order, Sessions, found, latest_of, page_of, within
 from service.storage.texts import storable
 
 _INTERVAL: Final = "severity_dB_ci95"
@@ -21,6 +21,7 @@ _ENDS: Final = (f"{_INTERVAL}_low", f"{_INTERVAL}_high")
 _COLUMNS: Final = [
     getattr(RotorFindingRow, name) for name in ("recording_id", "motor", "time_ns", *_FIGURES, *_ENDS)
 ]
+_ORDER: Final[Order] = (RotorFindingRow.time_ns, RotorFindingRow.recording_id)
 
 MOST_OF_EACH_END: Final = 500
 """So many of a motor's first findings, which its baselines follow from, and of its latest ones are judged."""
@@ -46,15 +47,10 @@ class RotorRows(Sessions):
 
         Raises NotFoundError.
         """
-        query = select(*_COLUMNS).where(RotorFindingRow.motor == motor)
-        if from_ns is not None:
-            query = query.where(RotorFindingRow.time_ns >= from_ns)
-        if to_ns is not None:
-            query = query.where(RotorFindingRow.time_ns < to_ns)
-        order: Order = [RotorFindingRow.time_ns, RotorFindingRow.recording_id]
+        query = _of_motor(motor).where(*within(RotorFindingRow.time_ns, from_ns, to_ns))
         with self._read() as session:
             found(session, MotorRow, motor, "motor")
-            return page_of(session, query, order, _entry, limit=limit, after=after)
+            return page_of(session, query, _ORDER, _entry, limit=limit, after=after)
 
     def latest_rotor_findings(self, motor: str, *, limit: int) -> tuple[RotorEntry, ...]:
         """Return what a motor's latest recordings show of its rotor, oldest first. Raises NotFoundError."""
@@ -65,19 +61,12 @@ class RotorRows(Sessions):
 
 def latest_findings(session: Session, motor: str, limit: int) -> tuple[RotorEntry, ...]:
     """Return what a motor's latest recordings show of its rotor, oldest first."""
-    query = (
-        select(*_COLUMNS)
-        .where(RotorFindingRow.motor == motor)
-        .order_by(RotorFindingRow.time_ns.desc(), RotorFindingRow.recording_id.desc())
-        .limit(limit)
-    )
-    return tuple(_entry(*row) for row in reversed(session.execute(query).all()))
+    return latest_of(session, _of_motor(motor), _ORDER, _entry, limit=limit)
 
 
 def rotor_condition_of(session: Session, motor: str) -> RotorCondition:
     """Return what a motor's recordings say of its rotor together: the first ones, and the latest ones."""
-    of_motor = select(*_COLUMNS).where(RotorFindingRow.motor == motor).limit(MOST_OF_EACH_END)
-    first = of_motor.order_by(RotorFindingRow.time_ns, RotorFindingRow.recording_id)
+    first = _of_motor(motor).order_by(*_ORDER).limit(MOST_OF_EACH_END)
     entries = {row.recording_id: _entry(*row) for row in session.execute(first)}
     if len(entries) == MOST_OF_EACH_END:
         entries |= {one.recording_id: one for one in latest_findings(session, motor, MOST_OF_EACH_END)}
@@ -101,6 +90,10 @@ def keep_rotor_finding(
 def forget_rotor_finding(session: Session, recording_id: str) -> None:
     """Delete what a recording showed of the rotor."""
     session.execute(delete(RotorFindingRow).where(RotorFindingRow.recording_id == recording_id))
+
+
+def _of_motor(motor: str) -> Select[*tuple[Any, ...]]:
+    return select(*_COLUMNS).where(RotorFindingRow.motor == motor)
 
 
 def _entry(recording_id: str, motor: str, time_ns: int, *values: Any) -> RotorEntry:

@@ -3,17 +3,18 @@
 from dataclasses import fields
 from typing import Any, Final
 
-from sqlalchemy import delete, select
+from sqlalchemy import Select, delete, select
 from sqlalchemy.orm import Session
 
 from core.supply.figures import SupplyFigures
 from service.storage.models import MotorRow, SupplyFiguresRow
 from service.storage.records import Cursor, Page, SupplyEntry
-from service.storage.repository.sessions import Order, Sessions, columns_of, found, page_of
+from service.storage.repository.sessions import Order, Sessions, columns_of, found, latest_of, page_of, within
 from service.storage.texts import storable
 
 _ENTRY: Final = (SupplyFiguresRow.recording_id, SupplyFiguresRow.motor, SupplyFiguresRow.time_ns)
 _FIGURES: Final = columns_of(SupplyFigures, SupplyFiguresRow)
+_ORDER: Final[Order] = (SupplyFiguresRow.time_ns, SupplyFiguresRow.recording_id)
 
 
 class SupplyRows(Sessions):
@@ -30,26 +31,15 @@ class SupplyRows(Sessions):
 
         Raises NotFoundError.
         """
-        query = select(*_ENTRY, *_FIGURES).where(SupplyFiguresRow.motor == motor)
-        if from_ns is not None:
-            query = query.where(SupplyFiguresRow.time_ns >= from_ns)
-        if to_ns is not None:
-            query = query.where(SupplyFiguresRow.time_ns < to_ns)
-        order: Order = [SupplyFiguresRow.time_ns, SupplyFiguresRow.recording_id]
+        query = _of_motor(motor).where(*within(SupplyFiguresRow.time_ns, from_ns, to_ns))
         with self._read() as session:
             found(session, MotorRow, motor, "motor")
-            return page_of(session, query, order, _entry, limit=limit, after=after)
+            return page_of(session, query, _ORDER, _entry, limit=limit, after=after)
 
     def latest_supply(self, motor: str, *, limit: int) -> tuple[SupplyEntry, ...]:
         """Return what a motor's latest recordings show of its supply, oldest first."""
-        query = (
-            select(*_ENTRY, *_FIGURES)
-            .where(SupplyFiguresRow.motor == motor)
-            .order_by(SupplyFiguresRow.time_ns.desc(), SupplyFiguresRow.recording_id.desc())
-            .limit(limit)
-        )
         with self._read() as session:
-            return tuple(_entry(*row) for row in reversed(session.execute(query).all()))
+            return latest_of(session, _of_motor(motor), _ORDER, _entry, limit=limit)
 
 
 def keep_supply(
@@ -67,6 +57,10 @@ def keep_supply(
 def forget_supply(session: Session, recording_id: str) -> None:
     """Delete what a recording showed of the supply."""
     session.execute(delete(SupplyFiguresRow).where(SupplyFiguresRow.recording_id == recording_id))
+
+
+def _of_motor(motor: str) -> Select[*tuple[Any, ...]]:
+    return select(*_ENTRY, *_FIGURES).where(SupplyFiguresRow.motor == motor)
 
 
 def _entry(recording_id: str, motor: str, time_ns: int, *figures: Any) -> SupplyEntry:
