@@ -9,15 +9,8 @@ from numpy.typing import NDArray
 
 from core.relay_reports.clock_times import DateOrder, time_of, time_of_fields
 from core.relay_reports.error import ReportError
-from core.relay_reports.report_text import (
-    Line,
-    after_head,
-    compressed_table,
-    is_compressed,
-    is_empty,
-    label_of,
-    report_lines,
-)
+from core.relay_reports.report_text import ReportText, report_text
+from core.relay_reports.tables import compressed_table, is_empty, label_of, plain_table
 
 MOST_COLUMNS = 64
 _TIME_LABELS = {"REC_NUM", "MONTH", "DAY", "YEAR", "HOUR", "MIN", "SEC", "MSEC"}
@@ -66,10 +59,8 @@ def read_load_profile(
     OSError
         If the file cannot be read.
     """
-    if is_compressed(report, name):
-        labels, rows = _compressed(report, name)
-    else:
-        labels, rows = _plain(report_lines(report, name), name, date_order)
+    text = report_text(report, name)
+    labels, rows = _compressed(text) if text.is_compressed else _plain(text, date_order)
     if len(labels) > MOST_COLUMNS or len(set(labels)) < len(labels):
         raise ReportError(
             name,
@@ -83,30 +74,26 @@ def read_load_profile(
     return LoadRows(time_ns, {label: values[:, place].copy() for place, label in enumerate(labels)})
 
 
-def _plain(lines: list[Line], name: str, order: DateOrder) -> tuple[list[str], list[_Row]]:
-    found = list(after_head(lines, "DATE", "TIME"))
-    if not found:
-        if any(is_empty(line.text) for line in lines):
-            return [], []
-        raise ReportError(name, "end", expected="a heading with DATE and TIME", found="none")
-    heading = [label_of(field) for field in found[0][1]]
-    first = heading.index("DATE")
-    labels = heading[first + 2 :]
-    if heading[first + 1] != "TIME":
-        raise found[0][0].error("", expected="TIME behind DATE", found=heading[first + 1])
+def _plain(report: ReportText, order: DateOrder) -> tuple[list[str], list[_Row]]:
+    table = plain_table(report, "DATE", "TIME")
+    if not table.labels:
+        return [], []
+    first = table.labels.index("DATE")
+    labels = list(table.labels[first + 2 :])
+    if table.labels[first + 1 : first + 2] != ("TIME",):
+        raise ReportError(report.name, "heading", expected="TIME behind DATE", found=", ".join(table.labels))
     rows: list[_Row] = []
-    for line, fields in found[1:]:
+    for line, fields in table.rows:
         if is_empty(line.text):
             continue
-        if len(fields) != len(heading):
-            raise line.error("", expected=f"{len(heading)} fields", found=f"{len(fields)} fields")
+        line.require_fields(fields, len(table.labels))
         figures = [line.figure(label, text) for label, text in zip(labels, fields[first + 2 :], strict=True)]
         rows.append((time_of(line, fields[first], fields[first + 1], order), figures))
     return labels, rows
 
 
-def _compressed(report: bytes | str | Path, name: str) -> tuple[list[str], list[_Row]]:
-    table = compressed_table(report, name)
+def _compressed(report: ReportText) -> tuple[list[str], list[_Row]]:
+    table = compressed_table(report)
     columns = [
         (place, label_of(label)) for place, label in enumerate(table.labels) if label not in _TIME_LABELS
     ]

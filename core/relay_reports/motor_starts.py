@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from core.relay_reports.clock_times import DateOrder, time_of
 from core.relay_reports.error import ReportError
-from core.relay_reports.report_text import Line, fields_of, is_empty, label_of, report_lines
+from core.relay_reports.report_text import Line, report_text
+from core.relay_reports.tables import fields_of, is_empty, label_of
 
 Array = NDArray[np.float64]
 
@@ -20,7 +21,6 @@ _SUMMARY = {
     "peak_current_A": re.compile(r"max(?:imum)? start current\W+(.+)", re.IGNORECASE),
     "lowest_voltage_V": re.compile(r"min(?:imum)? start voltage\W+(.+)", re.IGNORECASE),
 }
-_FIGURE = re.compile(r"(\d+(?:\.\d+)?)\s*[AVs]?", re.ASCII)
 _UNFINISHED = "did not end"
 _TIME_LABELS = ("TIME", "CYCLE")
 _PHASES = ("IA", "IB", "IC")
@@ -90,7 +90,7 @@ def read_motor_starts(
     OSError
         If the file cannot be read.
     """
-    lines = report_lines(report, name)
+    lines = report_text(report, name).lines()
     begins = [place for place, line in enumerate(lines) if _BEGINNING.match(line.text)]
     if not begins:
         if any(is_empty(line.text) for line in lines):
@@ -130,10 +130,7 @@ def _start(lines: list[Line], order: DateOrder, frequency_Hz: float | None) -> S
 def _figure(line: Line, field: str, text: str) -> float | None:
     if field == "duration_s" and text == _UNFINISHED:
         return None
-    found = _FIGURE.fullmatch(text)
-    if found is None:
-        raise line.error(field, expected="a number", found=text)
-    return line.figure(field, found[1])
+    return line.quantity(field, text)
 
 
 def _curve(lines: list[Line], frequency_Hz: float | None) -> tuple[Array, Array, Array | None]:
@@ -146,8 +143,7 @@ def _curve(lines: list[Line], frequency_Hz: float | None) -> tuple[Array, Array,
     rows = []
     for line in lines[1:]:
         fields = fields_of(line)
-        if len(fields) != len(labels):
-            raise line.error("", expected=f"{len(labels)} fields", found=f"{len(fields)} fields")
+        line.require_fields(fields, len(labels))
         rows.append([line.figure(label, text) for label, text in zip(names, fields, strict=True)])
     table = np.array(rows, np.float64).reshape(len(rows), len(labels))
     time_s = table[:, 0]

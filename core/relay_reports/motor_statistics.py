@@ -7,11 +7,10 @@ from pathlib import Path
 
 from core.relay_reports.clock_times import DateOrder, time_of
 from core.relay_reports.error import ReportError
-from core.relay_reports.report_text import Line, report_lines
+from core.relay_reports.report_text import Line, report_text
 
 _ENTRY = re.compile(r"(\S.*?)(?:\s{2,}|\s*:\s+)(\S.*)")
 _HOURS = re.compile(r"(\d{1,7}):([0-5]\d):([0-5]\d)(?:\s*\(h:mm:ss\))?", re.ASCII)
-_FIGURE = re.compile(r"(-?\d+(?:\.\d+)?)(?:\s*(A|s|%|V))?", re.ASCII)
 _TRIPS = "trips, "
 
 
@@ -73,7 +72,7 @@ def read_motor_statistics(
         If the file cannot be read.
     """
     entries: dict[str, tuple[Line, str]] = {}
-    for line in report_lines(report, name):
+    for line in report_text(report, name).lines():
         entry = _ENTRY.fullmatch(line.text)
         if entry is None:
             continue
@@ -88,14 +87,11 @@ def read_motor_statistics(
         if label not in entries:
             return None
         line, text = entries[label]
-        found = _FIGURE.fullmatch(text)
-        if found is None:
-            raise line.error(label, expected="a number", found=text)
-        return line.figure(label, found[1])
+        return line.quantity(label, text)
 
     def count(label: str) -> int | None:
         number = figure(label)
-        if number is not None and (number < 0 or not number.is_integer()):
+        if number is not None and not number.is_integer():
             raise entries[label][0].error(label, expected="a whole number", found=entries[label][1])
         return None if number is None else int(number)
 

@@ -4,15 +4,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from core.relay_reports.clock_times import DateOrder, time_of, time_of_fields
-from core.relay_reports.error import ReportError
-from core.relay_reports.report_text import (
-    Line,
-    after_head,
-    compressed_table,
-    is_compressed,
-    is_empty,
-    report_lines,
-)
+from core.relay_reports.report_text import ReportText, report_text
+from core.relay_reports.tables import compressed_table, plain_table
 
 ASSERTED, DEASSERTED = "Asserted", "Deasserted"
 _FEWEST_FIELDS = 4
@@ -63,24 +56,17 @@ def read_sequence_of_events(
     OSError
         If the file cannot be read.
     """
-    if is_compressed(report, name):
-        changes = _compressed(report, name)
-    else:
-        changes = _plain(report_lines(report, name), name, date_order)
+    text = report_text(report, name)
+    changes = _compressed(text) if text.is_compressed else _plain(text, date_order)
     # A report has the newest first, and those of one moment in that order, too.
     changes.reverse()
     changes.sort(key=lambda change: change.time_ns)
     return tuple(changes)
 
 
-def _plain(lines: list[Line], name: str, order: DateOrder) -> list[StateChange]:
-    found = list(after_head(lines, "DATE", "TIME", "ELEMENT", "STATE"))
-    if not found:
-        if any(is_empty(line.text) for line in lines):
-            return []
-        raise ReportError(name, "end", expected="a heading with DATE, TIME, ELEMENT, STATE", found="none")
+def _plain(report: ReportText, order: DateOrder) -> list[StateChange]:
     changes = []
-    for line, fields in found[1:]:
+    for line, fields in plain_table(report, "DATE", "TIME", "ELEMENT", "STATE").rows:
         if len(fields) < _FEWEST_FIELDS or not fields[0].isdecimal():
             raise line.error("", expected="number, date, time, element and state", found=line.text)
         time_ns = time_of(line, fields[1], fields[2], order)
@@ -88,8 +74,8 @@ def _plain(lines: list[Line], name: str, order: DateOrder) -> list[StateChange]:
     return changes
 
 
-def _compressed(report: bytes | str | Path, name: str) -> list[StateChange]:
-    table = compressed_table(report, name)
+def _compressed(report: ReportText) -> list[StateChange]:
+    table = compressed_table(report)
     changes = []
     for line, fields in table.rows:
         by_label = dict(zip(table.labels, fields, strict=True))

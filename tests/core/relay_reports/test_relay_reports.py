@@ -146,6 +146,7 @@ Reader = Callable[[str | bytes], object]
             LDP.replace("IB_MAG", "IA_MAG"),
             "heading: expected at most 64 labels, each once",
         ),
+        (read_load_profile, "IA TIME DATE\n", "heading: expected TIME behind DATE"),
         (read_motor_statistics, HEAD, '"Running time" or "Number of starts", found neither'),
         (read_motor_statistics, MOT.replace(" 17", " 1.5"), "expected a whole number"),
         (read_motor_statistics, MOT.replace("120:05:30", "120:75"), "expected hours such as"),
