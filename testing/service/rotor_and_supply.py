@@ -1,5 +1,7 @@
 """What recordings show beside their diagnosis, for tests without a worker."""
 
+from dataclasses import replace
+
 from core.diagnosis.verdict import Diagnosis
 from core.rotor.finding import RotorFinding, RotorState
 from core.supply.figures import SupplyFigures
@@ -23,18 +25,13 @@ SOUND_ROTOR = RotorFinding(
     reasons=("no asymmetry of the rotor above -52 dB",),
 )
 
-BROKEN_ROTOR = RotorFinding(
+BROKEN_ROTOR = replace(
+    SOUND_ROTOR,
     state=RotorState.FAULT,
     lower_sideband_dB=-35.5,
     upper_sideband_dB=-41.0,
     severity_dB=-29.0,
     severity_dB_ci95=(-31.0, -27.5),
-    detection_limit_dB=-52.0,
-    slip=0.031,
-    load_level=0.72,
-    load_bin=6,
-    duration_s=10.0,
-    load_oscillation_dB=-60.0,
     reasons=("the rotor's resistance is asymmetric",),
 )
 

@@ -16,6 +16,8 @@ from service.api.conditions.notes import keep_note
 from service.api.conditions.schemas import NoteRequest, RestartRequest, Withdrawal
 from service.api.document import Name
 from service.api.problems import ProblemError
+from service.api.recordings.diagnoses import queue_diagnosis
+from service.api.recordings.diagnosis_schemas import DiagnosisRequest
 from service.web.addresses import address
 from service.web.forms import document_of_form
 from service.web.live.routes import live_address
@@ -88,14 +90,7 @@ def record_motor(view: Looking, name: Name) -> Response:
 @router.post("/motors/{name}/diagnoses", dependencies=[require(Permission.RECORDINGS)])
 def diagnose_again(view: Looking, name: Name, recording: Annotated[UUID, Form()]) -> Response:
     """Diagnose a recording again; its motor's condition follows."""
-    context = view.context
-    context.repository.request_diagnosis(
-        str(recording),
-        by=view.asking.actor,
-        now_ns=view.now_ns,
-        most_queued=context.settings.max_queued_diagnoses,
-    )
-    context.on_new_job()
+    queue_diagnosis(view.context, view.asking.actor, str(recording), DiagnosisRequest())
     return _done(view, name, "diagnosis-requested")
 
 
@@ -144,11 +139,10 @@ def withdraw_note(view: Looking, name: Name, note_id: UUID, reason: Text = "") -
 
 def _utc(text: str) -> str:
     """Return the time of a form's field, which is in UTC and has no offset, as the API takes it."""
-    return text if not text or text.endswith("Z") or "T" not in text else f"{text}{':00' * _is_short(text)}Z"
-
-
-def _is_short(text: str) -> bool:
-    return text.count(":") == 1
+    if "T" not in text or text.endswith("Z"):
+        return text
+    has_seconds = text.count(":") > 1
+    return f"{text}Z" if has_seconds else f"{text}:00Z"
 
 
 def _kinds(view: View) -> list[EventKind]:
