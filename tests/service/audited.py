@@ -1,7 +1,7 @@
 """A service whose changes are looked up in its audit trail, with what the changes are about."""
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import count
@@ -127,6 +127,19 @@ SHELVED = {"until": rfc3339(time.time_ns() + NANOSECONDS_PER_DAY)}
 
 Send = Callable[[Prepared], httpx.Response]
 """Sends one change with success."""
+
+Changes = Mapping[str, tuple[Send, str]]
+"""How each change, by method and path, is sent with success, and the action of the entry that it leaves."""
+
+
+def sent(prepared: Prepared, changes: Changes, change: str) -> httpx.Response:
+    """Send a change; the entry that it leaves names who sent it, and from where."""
+    send, action = changes[change]
+    answer = send(prepared)
+    assert not answer.is_error, answer.text
+    assert answer.request.method == change.partition(" ")[0]
+    assert prepared.latest_entries() == [(action, ME, "127.0.0.1")]
+    return answer
 
 
 @contextmanager

@@ -1,15 +1,15 @@
 """Every route that changes something leaves an entry that names who asked; a new one has to be told here."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 import pytest
 
 from service.api import create_app
-from tests.service.audited import API, ME, MOTOR, PASSWORD, SHELVED, Prepared, Send, audited_service
+from tests.service.audited import API, MOTOR, PASSWORD, SHELVED, Changes, Prepared, audited_service, sent
 
 CHANGING = {"post", "put", "patch", "delete"}
 
-REQUESTS: Mapping[str, tuple[Send, str]] = {
+REQUESTS: Changes = {
     "POST /api/v1/motors/{name}/event-reports": (
         lambda it: it.client.post(f"{MOTOR}/event-reports"),
         "recording-requested",
@@ -122,7 +122,6 @@ REQUESTS: Mapping[str, tuple[Send, str]] = {
         "token-added",
     ),
 }
-"""A request of each changing route that is carried out, and the action of the entry that it leaves."""
 
 
 @pytest.fixture(scope="module")
@@ -143,11 +142,7 @@ def test_every_changing_route_is_told(prepared: Prepared) -> None:
 
 @pytest.mark.parametrize("route", REQUESTS)
 def test_a_changing_route_leaves_an_entry(prepared: Prepared, route: str) -> None:
-    send, action = REQUESTS[route]
-    answer = send(prepared)
-    assert answer.is_success, answer.text
-    assert answer.request.method == route.partition(" ")[0]
-    assert prepared.latest_entries() == [(action, ME, "127.0.0.1")]
+    assert sent(prepared, REQUESTS, route).is_success
 
 
 def test_a_route_that_reads_leaves_none(prepared: Prepared) -> None:
