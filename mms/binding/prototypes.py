@@ -39,6 +39,8 @@ class VariableAccessSpecification(Structure):
 
 # void (parameter, connection)
 ConnectionClosedHandler = CFUNCTYPE(None, c_void_p, c_void_p)
+# void (parameter, connection, state)
+StateChangedHandler = CFUNCTYPE(None, c_void_p, c_void_p, c_int)
 # void (parameter, report)
 ReportHandler = CFUNCTYPE(None, c_void_p, c_void_p)
 # void (parameter, control)
@@ -131,7 +133,9 @@ PROTOTYPES: Final[dict[str, tuple[object, list[object]]]] = {
     # client: association
     "IedConnection_createEx": (c_void_p, [c_void_p, c_bool]),
     "IedConnection_destroy": (None, [c_void_p]),
-    "IedConnection_connect": (None, [c_void_p, _ERROR, c_char_p, c_int]),
+    "IedConnection_connectAsync": (None, [c_void_p, _ERROR, c_char_p, c_int]),
+    "IedConnection_tick": (c_bool, [c_void_p]),
+    "IedConnection_installStateChangedHandler": (None, [c_void_p, StateChangedHandler, c_void_p]),
     "IedConnection_setConnectTimeout": (None, [c_void_p, c_uint32]),
     "IedConnection_setRequestTimeout": (None, [c_void_p, c_uint32]),
     "IedConnection_installConnectionClosedHandler": (None, [c_void_p, ConnectionClosedHandler, c_void_p]),

@@ -10,18 +10,15 @@ import logging
 import socket
 import time
 from collections.abc import Callable
-from contextlib import AbstractContextManager, nullcontext
-from threading import Event
 from typing import Final
 
 from mms import errors
-from mms.binding.callbacks import guarded
-from mms.binding.connection_deadline import connections_between, end_connections_after, open_sockets
 from mms.binding.linked_lists import take_names
-from mms.binding.prototypes import ConnectionClosedHandler
+from mms.binding.made_socket import DescriptorsExhaustedError
 from mms.client.closed_notice import ClosedNotice
 from mms.client.connect_failure import explain_failure
 from mms.client.credentials import Credentials
+from mms.client.library_connection import LibraryConnection
 from mms.client.limits import ClientLimits
 
 log: Final = logging.getLogger("mms")
@@ -85,8 +82,8 @@ class Association:
 
     Attributes
     ----------
-    pointer : int
-        Pointer to the library's IedConnection; 0 where there is none.
+    connection : LibraryConnection
+        The library's connection object, once `connect` has returned.
     notice : ClosedNotice
         Tells that the association has ended.
     handlers : list of object
@@ -106,7 +103,7 @@ class Association:
         self._credentials = credentials
         self._limits = limits
         self._on_closed = on_closed
-        self.pointer = 0
+        self.connection: LibraryConnection
         self.notice = ClosedNotice(on_closed)
         self.handlers: list[object] = []
         self.first_names: list[str] | None = None
@@ -140,7 +137,9 @@ class Association:
             end = now + (deadline - now) / (len(addresses) - turn + 1)
             code = self._associate(host, address, port, end)
             if code == 0:
-                self._lib.IedConnection_setRequestTimeout(self.pointer, round(request_timeout_s * 1000))
+                self._lib.IedConnection_setRequestTimeout(
+                    self.connection.pointer, round(request_timeout_s * 1000)
+                )
                 return
             if turn < len(addresses):
                 continue
@@ -150,26 +149,9 @@ class Association:
                 error = type(error)(host, "connect", code, reason)
             raise error
 
-    def limited(self, limit_s: float) -> AbstractContextManager[Event]:
-        """End the association when a limit is over.
-
-        Parameters
-        ----------
-        limit_s : float
-            The limit [s].
-
-        Returns
-        -------
-        context manager of threading.Event
-            The event tells that the association was ended.
-        """
-        return end_connections_after(connections_between(peer=self._peer), limit_s, before=self._others)
-
     def destroy(self) -> None:
         """Free the library's object, and with it the callbacks."""
-        pointer, self.pointer = self.pointer, 0
-        if pointer:
-            self._lib.IedConnection_destroy(pointer)
+        self.connection.destroy()
         self.handlers.clear()
 
     def _refused(self, host: str, code: int, address: tuple[str, int], deadline: float) -> errors.MmsError:
@@ -206,37 +188,26 @@ class Association:
         return _CONNECTION_LOST
 
     def _attempt(self, address: str, port: int, timeout_s: float) -> int:
-        lib = self._lib
-        self.pointer = self._credentials.new_connection()
-        self._peer, self._others = (address, port), open_sockets()
-        notice = self.notice
+        self.connection = LibraryConnection(
+            self._lib,
+            self._credentials.new_connection(),
+            has_thread=self._credentials.tls is not None,
+            notice=self.notice,
+        )
+        try:
+            code = self.connection.connect(address, port, timeout_s)
+        except DescriptorsExhaustedError as error:
+            self.destroy()
+            raise errors.ConnectFailed(f"{address}:{port}", "connect", 0, str(error)) from error
+        return code or self._first_request(timeout_s)
 
-        def closed(_parameter: int | None, _connection: int | None) -> None:
-            notice.notify()
-
-        handler = ConnectionClosedHandler(guarded(closed, None))
-        self.handlers = [handler]
-        lib.IedConnection_installConnectionClosedHandler(self.pointer, handler, None)
-        timeout_ms = max(1, round(timeout_s * 1000))
-        # The connect timeout covers TCP; the request timeout the association and the first request.
-        lib.IedConnection_setConnectTimeout(self.pointer, timeout_ms)
-        lib.IedConnection_setRequestTimeout(self.pointer, timeout_ms)
-        error = ctypes.c_int(0)
-        unlimited = self._credentials.tls is None
-        with (
-            nullcontext()
-            if unlimited
-            else end_connections_after(connections_between(peer=(address, port)), timeout_s)
-        ):
-            lib.IedConnection_connect(self.pointer, ctypes.byref(error), address.encode("ascii"), port)
-        return error.value or self._first_request()
-
-    def _first_request(self) -> int:
+    def _first_request(self, timeout_s: float) -> int:
         """Return 0 if the relay answers properly: that it cannot tell its names for now is an answer."""
         lib = self._lib
         error = ctypes.c_int(0)
-        with self.limited(self._limits.names_s) as over:
-            mms = lib.IedConnection_getMmsConnection(self.pointer)
+        connection = self.connection
+        with connection.limited(self._limits.names_s) as over, connection.requesting(timeout_s):
+            mms = lib.IedConnection_getMmsConnection(connection.pointer)
             names = lib.MmsConnection_getDomainNames(mms, ctypes.byref(error))
         listed = take_names(lib, names)
         if over.is_set():

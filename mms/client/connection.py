@@ -206,7 +206,9 @@ class Connection:
         with self._lock:
             if not self.is_open:
                 raise errors.ConnectionLost(self.host, operation, 0, "the connection is closed")
-            yield self._association.pointer
+            connection = self._association.connection
+            with connection.requesting(self.request_timeout_s):
+                yield connection.pointer
 
     def request(
         self, operation: str, function: ServiceFunction, *arguments: object, longest_s: float | None = None,
@@ -276,7 +278,7 @@ class Connection:
     ) -> int | None:  # fmt: skip
         error = ctypes.c_int(0)
         sent_s = time.monotonic()
-        with nullcontext() if longest_s is None else self._association.limited(longest_s) as over:
+        with nullcontext() if longest_s is None else self._association.connection.limited(longest_s) as over:
             result = function(pointer, ctypes.byref(error), *arguments)
         took_s = time.monotonic() - sent_s
         if not error.value:

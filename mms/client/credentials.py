@@ -45,6 +45,8 @@ class Credentials:
     def new_connection(self) -> int:
         """Make a connection of the library that will show the credentials.
 
+        With TLS it has a thread of the library's own: what TLS has decrypted already is no event of a socket.
+
         Returns
         -------
         int
@@ -58,10 +60,8 @@ class Credentials:
         lib = self._lib
         if self.tls is not None:
             self.tls.reset()
-        threaded = True
-        pointer = int(
-            lib.IedConnection_createEx(None if self.tls is None else self.tls.pointer, threaded) or 0
-        )
+        tls = None if self.tls is None else self.tls.pointer
+        pointer = int(lib.IedConnection_createEx(tls, tls is not None) or 0)
         if not pointer:
             raise MemoryError("the MMS library has no memory for a connection")
         if self._password is not None:

@@ -12,7 +12,6 @@ from pathlib import Path
 from types import TracebackType
 from typing import Final, Self
 
-from mms.binding.connection_deadline import connections_between, end_connections_after
 from mms.binding.library import library
 from mms.errors import ModelError, ServerStartFailed
 from mms.security.passwords import make_authenticator
@@ -21,6 +20,7 @@ from mms.server.attributes import Attributes
 from mms.server.controls import OperateHandler
 from mms.server.file_access import FileGuard, FileHook
 from mms.server.handlers import Handlers
+from mms.server.handshake_limit import end_connections_after
 from mms.server.model import Model
 from mms.server.pump import ServerPump
 from mms.server.read_access import ReadHandler
@@ -369,7 +369,7 @@ class Server:
 
     def _process_incoming(self) -> None:
         """Accept, read and answer. A TLS handshake is waited for, with everything else at a standstill."""
-        ours = connections_between(own=(self.address, self.port))
+        ours = self.address, self.port
         with (
             nullcontext() if self._tls is None else end_connections_after(ours, self._tls_handshake_timeout_s)
         ):

@@ -2,7 +2,6 @@
 
 import asyncio
 import math
-import resource
 import socket
 import sys
 from collections.abc import Callable
@@ -18,6 +17,7 @@ from service.api.limits.connection_guard import ConnectionGuard
 from service.api.limits.connection_queue import ConnectionQueue
 from service.api.limits.connections import EXTRA, ConnectionLimits, LimitedConnection, OpenConnections
 from service.configuration.settings import Settings
+from service.process.open_files import allow_open_files
 from service.process.termination import Termination
 
 log: FilteringBoundLogger = structlog.get_logger(__name__)
@@ -143,7 +143,7 @@ class ApiServer(uvicorn.Server):
 
 def connection_limits(settings: Settings) -> ConnectionLimits:
     """Return the limits of the settings; fewer connections where this process may not open enough files."""
-    descriptors = _allowed_descriptors(settings.max_connections + QUEUE + EXTRA + OTHER_DESCRIPTORS)
+    descriptors = allow_open_files(settings.max_connections + QUEUE + EXTRA + OTHER_DESCRIPTORS)
     possible = max(descriptors - OTHER_DESCRIPTORS - EXTRA - FEWEST_WAITING, FEWEST_CONNECTIONS)
     if settings.max_connections > possible:
         log.warning(
@@ -160,13 +160,3 @@ def connection_limits(settings: Settings) -> ConnectionLimits:
         transfer_timeout_s=settings.transfer_timeout_s,
         idle_timeout_s=settings.idle_timeout_s,
     )
-
-
-def _allowed_descriptors(wanted: int) -> int:
-    """Ask the system for so many files that this process may open, and return how many it allows."""
-    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
-    most = wanted if hard == resource.RLIM_INFINITY else min(wanted, hard)
-    if soft != resource.RLIM_INFINITY and soft < most:
-        resource.setrlimit(resource.RLIMIT_NOFILE, (most, hard))
-        return most
-    return wanted if soft == resource.RLIM_INFINITY else soft

@@ -20,6 +20,7 @@ from service.configuration.settings import Settings
 from service.plant import read_plant
 from service.process.installation import installation_id
 from service.process.logs import configure_logging
+from service.process.open_files import allow_open_files
 from service.process.single_instance import exclusive
 from service.process.termination import leave_to_parent
 from service.recording_store.store import RecordingStore
@@ -29,6 +30,9 @@ log = structlog.get_logger(__name__)
 
 LEASES_EXPIRED = 3
 """Exit code of a gateway that could not renew its leases."""
+
+OPEN_FILES = 4096
+"""Room for the sockets of most relays: each is held by the MMS library, below 1024, and by us, above."""
 
 
 def gateway_id(settings: Settings, number: int) -> str:
@@ -45,6 +49,7 @@ def main(settings_pipe: BinaryIO = sys.stdin.buffer) -> None:
     if any(access.tls is not None for access in settings.relays.values()):
         filter_tls_log_from_stderr()
     configure_logging("collector", settings.log_format)
+    allow_open_files(OPEN_FILES)
     service_gone = Event()
     Thread(
         target=_wait_for_end_of_input, args=(settings_pipe, service_gone), name="parent-watch", daemon=True
