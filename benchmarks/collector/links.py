@@ -61,7 +61,7 @@ def _host(ports: Sequence[int], told: Connection) -> None:
 
 
 @contextmanager
-def _relays(number: int) -> Iterator[list[int]]:
+def _relays(number: int) -> Iterator[Sequence[int]]:
     """Serve relays in processes of their own; gives their ports."""
     ports = free_ports(number)
     context = multiprocessing.get_context("spawn")

@@ -12,6 +12,7 @@ slip: of a tachometer, or of the sidebands that an uneven rotor makes (`core.rot
 """
 
 from dataclasses import replace
+from math import sqrt
 from typing import NamedTuple
 
 from core.machines.parameters import Motor
@@ -60,7 +61,7 @@ def turns_ratio(motor: Motor) -> float:
     if rotor is None:
         raise ValueError(f"turns ratio: expected a wound rotor, found the cage of {motor.name}")
     linked = machine.magnetising_inductance_H / (machine.stator_leakage_H + machine.magnetising_inductance_H)
-    return 3.0**0.5 * motor.nameplate.winding_voltage_V * linked / rotor.open_circuit_voltage_V
+    return sqrt(3.0) * motor.nameplate.winding_voltage_V * linked / rotor.open_circuit_voltage_V
 
 
 def external_resistance_ohm(motor: Motor) -> tuple[float, float]:

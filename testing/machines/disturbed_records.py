@@ -5,7 +5,7 @@ additional shorted winding is put together here from the same coils.
 """
 
 from dataclasses import dataclass, replace
-from math import pi
+from math import inf, pi
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,8 +43,8 @@ class MotorWithAdditionalWinding(MotorPlant):
     level: float = 0.0
     winding: int = 0
 
-    def circuit(self, time_s: float) -> WindingCircuit:
-        del time_s
+    def circuit(self, time_s: float, closed_s: float = -inf) -> WindingCircuit:
+        del time_s, closed_s
         return additional_winding_circuit(self.motor, self.level, self.winding)
 
 

@@ -264,17 +264,18 @@ class MotorTable:
             Least and largest; zero by default.
         """
         value = self._take(key, 0.0)
-        ends = value if isinstance(value, list) else [value, value]
+        given: list[object] = value if isinstance(value, list) else [value, value]
+        ends = [float(end) for end in given if isinstance(end, int | float) and not isinstance(end, bool)]
         if (
-            len(ends) != 2
-            or any(isinstance(end, bool) or not isinstance(end, int | float) for end in ends)
+            len(given) != 2
+            or len(ends) != 2
             or not 0.0 <= ends[0] <= ends[1] < inf
             or ends[1] > most * (1.0 + ROUNDING)
         ):
             limit = "" if isnan(most) else f", 0 to {plain(most, 6)} {unit}"
             self._refuse(key, f"a number, or [least, largest]{limit}", value)
             return 0.0, 0.0
-        return float(ends[0]), float(ends[1])
+        return ends[0], ends[1]
 
     def refuse_all(self, keys: tuple[str, ...], expected: str) -> None:
         """Refuse keys that have no place here, wherever they are given.

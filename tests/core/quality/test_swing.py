@@ -16,7 +16,7 @@ from testing.machines.motors import MEDIUM
 from testing.machines.rotor_records import FREQUENCY_HZ, RotorCase
 
 STEP_S, POINTS = 5e-4, 2_400
-TIME_S = STEP_S * np.arange(POINTS)
+TIME_S: NDArray[np.float64] = np.asarray(STEP_S * np.arange(POINTS), dtype=np.float64)
 THREE_BARS = 3.0 / 28.0
 
 
@@ -39,7 +39,7 @@ def test_the_swing_is_taken_off_and_the_rest_stays() -> None:
     ids=["step", "late step", "ramp", "run-up", "part of a turn"],
 )
 def test_what_is_no_swing_stays(course: Callable[[NDArray[np.float64]], NDArray[np.float64]]) -> None:
-    moved = 1.0 + 0.3 * course(TIME_S)
+    moved = np.asarray(1.0 + 0.3 * course(TIME_S), dtype=np.float64)
     np.testing.assert_array_equal(without_swing(moved, STEP_S, 50.0), moved)
 
 
