@@ -14,7 +14,7 @@ curvature of Q_p. P gives half to dead-shorted turns and half to paths, evenly o
 of the loop's resistance that lies in the path.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from statistics import NormalDist
 
@@ -22,13 +22,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.diagnosis.case import Case
-from core.diagnosis.fundamental import components
 from core.diagnosis.operating_point import from_phasors
-from core.diagnosis.priors import beliefs
+from core.diagnosis.path_fits import HIGHEST, LOWEST, UNKNOWNS, FittedPaths, PathFits, candidates_of
 from core.diagnosis.propagation import Known, errors_of
 from core.diagnosis.refinement import FAULT_LEVEL, LOAD_LEVEL, PATH_RATIO, TIME_OFFSET, Fit, Refinement
 from core.machines.base import Array
-from core.machines.candidates import Candidates
 
 DEAD_SHORTED = 0.5
 """Probability of dead-shorted turns before the record is seen."""
@@ -37,20 +35,9 @@ PATH_SHARES = np.linspace(0.0, 0.9, 19)
 the current is in phase with the voltage, as in other asymmetries."""
 COARSE_SHARES = np.array([0.0, 0.5])
 """Shares with which the windings are told apart: their directions differ by more than any path turns them."""
-UNKNOWNS = (FAULT_LEVEL, LOAD_LEVEL, TIME_OFFSET)
-STEPS = np.array([1e-5, 1e-4, 1e-7])
-"""Steps of the difference quotients, small against any curvature and large against rounding."""
-LOWEST, HIGHEST = np.array([0.0, -0.2, -8e-3]), np.array([0.5, 2.0, 8e-3])
-WIDEST = np.diag((HIGHEST - LOWEST) ** -2.0)
-"""Curvature of a prior as wide as the ranges: none is wider, even where the record says nothing."""
-LONGEST_STEP = np.array([0.2, 0.4, 1e-3])
 FIRST_LEVEL, LEAST_START, LEAST_LOAD, MOST_LOAD = 0.03, 0.002, 0.02, 1.5
-MOST_ROUNDS, ROUNDS_OF_ALL = 12, 3
-HOPELESS = 40.0
-"""Promised misfit above the least beyond which a fit is not followed further after ROUNDS_OF_ALL."""
 NEAR, NEGLIGIBLE = 0.1, 3e-3
 """Steps in standard deviations below which a fit is good enough to be weighed, and to be used."""
-FIRST_DAMPING = 0.1
 POINTS = 40
 """Points with which a hypothesis stands for its normal distribution in a mixture."""
 WITHIN_REACH = 4.0
@@ -60,39 +47,6 @@ MOST_MISFIT = 9.2
 """Least misfit that one record of a hundred exceeds: quantile of chi square, two degrees of freedom."""
 
 _NORMAL_POINTS = np.array([NormalDist().inv_cdf((k + 0.5) / POINTS) for k in range(POINTS)])
-
-
-@dataclass(frozen=True, slots=True)
-class Hypotheses:
-    """Fits of a batch: windings and path shares held, level, load and offset at their likeliest.
-
-    Parameters
-    ----------
-    winding : ndarray of int, shape (candidates,)
-        Winding with the fault.
-    share : ndarray, shape (candidates,)
-        Share of the loop's resistance that lies in the path.
-    values, scatter : ndarray, shape (candidates, 3)
-        Level, load and offset, and the standard deviations that noise alone gives them.
-    misfit, log_evidence : ndarray, shape (candidates,)
-        Least misfit, and the logarithm of the evidence but for a constant.
-    response : ndarray, shape (candidates, 3, 4)
-        Change of level, load and offset by one ampere more of each measured component.
-    left : ndarray of complex, shape (candidates,)
-        Backward-turning current left, peak [A].
-    converged : ndarray of bool, shape (candidates,)
-        Whether the last step was negligible.
-    """
-
-    winding: NDArray[np.int64]
-    share: Array
-    values: Array
-    scatter: Array
-    misfit: Array
-    log_evidence: Array
-    response: Array
-    left: NDArray[np.complex128]
-    converged: NDArray[np.bool_]
 
 
 class PathPosterior:
@@ -116,8 +70,12 @@ class PathPosterior:
         near = replace(near, load_level=np.full(1, self._load))
         errors = errors_of(case, refinement.running.model, refinement.record, near, known)
         self._covariance = refinement.noise + errors @ errors.T
-        self._whitening = np.linalg.inv(np.linalg.cholesky(self._covariance))
-        self.evaluations = 0
+        self._fits = PathFits(refinement, self._covariance)
+
+    @property
+    def evaluations(self) -> int:
+        """Number of evaluations of the model so far."""
+        return self._fits.evaluations
 
     @property
     def backward_A(self) -> float:
@@ -125,11 +83,11 @@ class PathPosterior:
         return float(np.sqrt(self._covariance[2, 2] + self._covariance[3, 3]))
 
     @cached_property
-    def _windings(self) -> Hypotheses:
+    def _windings(self) -> FittedPaths:
         """COARSE_SHARES of each winding."""
         windings, shares = np.repeat(np.arange(3), COARSE_SHARES.size), np.tile(COARSE_SHARES, 3)
         start = np.tile([FIRST_LEVEL, self._load, 0.0], (windings.size, 1))
-        return self._fitted(windings, shares, start, NEAR)
+        return self._fits.fit(windings, shares, start, NEAR)
 
     @cached_property
     def winding(self) -> int:
@@ -138,13 +96,13 @@ class PathPosterior:
         return int(np.argmax(np.logaddexp.reduce(evidence, axis=1)))
 
     @cached_property
-    def _paths(self) -> Hypotheses:
+    def _paths(self) -> FittedPaths:
         """Every path of the likeliest winding, dead-shorted turns first."""
         dead, bridged = self._windings.values[self._windings.winding == self.winding]
         way = np.minimum(PATH_SHARES / COARSE_SHARES[1], 1.0)[:, np.newaxis]
         start = dead + way * (bridged - dead)
         start[:, 0] = np.maximum(start[:, 0], LEAST_START)
-        return self._fitted(np.full(PATH_SHARES.size, self.winding), PATH_SHARES, start, NEAR)
+        return self._fits.fit(np.full(PATH_SHARES.size, self.winding), PATH_SHARES, start, NEAR)
 
     @cached_property
     def probability(self) -> Array:
@@ -215,7 +173,7 @@ class PathPosterior:
         if int(fit.candidate.winding[0]) != self.winding or self.probability[0] < DEAD_SHORTED:
             return False
         values = np.array([[fit.value(name) for name in UNKNOWNS]])
-        misfit = self._misfit(values, self._modelled(values, fit.candidate.winding, np.zeros(1)))
+        misfit = self._fits.misfit(values, self._fits.modelled(values, fit.candidate.winding, np.zeros(1)))
         return bool(fit.is_sound and misfit[0] <= self._paths.misfit[0] + WITHIN_REACH)
 
     def likeliest(self) -> Fit:
@@ -228,7 +186,7 @@ class PathPosterior:
         """
         share = self._likeliest_share()
         start = self._paths.values[[int(np.argmin(np.abs(PATH_SHARES - share)))]]
-        found = self._fitted(np.full(1, self.winding), np.full(1, share), start, NEGLIGIBLE)
+        found = self._fits.fit(np.full(1, self.winding), np.full(1, share), start, NEGLIGIBLE)
         errors = dict(zip(UNKNOWNS, found.scatter[0].tolist(), strict=True))
         if share > 0.0:
             ratios = PATH_SHARES / (1.0 - PATH_SHARES)
@@ -251,13 +209,13 @@ class PathPosterior:
             The same without shorted turns.
         """
         values = np.array([[0.0, fit.value(LOAD_LEVEL), fit.value(TIME_OFFSET)]])
-        modelled = self._modelled(values, fit.candidate.winding, np.zeros(1))
+        modelled = self._fits.modelled(values, fit.candidate.winding, np.zeros(1))
         left = (self._measured - modelled)[0]
         response = {name: one for name, one in fit.response.items() if name != FAULT_LEVEL}
         return replace(
             fit,
-            candidate=_candidates(values, fit.candidate.winding, np.zeros(1)),
-            misfit=float(self._misfit(values, modelled)[0]),
+            candidate=candidates_of(values, fit.candidate.winding, np.zeros(1)),
+            misfit=float(self._fits.misfit(values, modelled)[0]),
             left=complex(left[2], left[3]),
             standard_error={
                 name: fit.standard_error[name] for name in UNKNOWNS[1:] if name in fit.standard_error
@@ -286,9 +244,9 @@ class PathPosterior:
         ahead = 0.5 * (before - after) / bend if bend < 0.0 else 0.0
         return float(PATH_SHARES[best] + ahead * (PATH_SHARES[1] - PATH_SHARES[0]))
 
-    def _as_fit(self, found: Hypotheses, errors: dict[str, float], edge: NDArray[np.bool_]) -> Fit:
+    def _as_fit(self, found: FittedPaths, errors: dict[str, float], edge: NDArray[np.bool_]) -> Fit:
         at_bound = tuple(name for name, is_edge in zip(UNKNOWNS, edge.tolist(), strict=True) if is_edge)
-        candidate = _candidates(found.values, found.winding, found.share)
+        candidate = candidates_of(found.values, found.winding, found.share)
         balanced = self._refinement.running.state(candidate).balanced
         return Fit(
             candidate=candidate,
@@ -305,100 +263,3 @@ class PathPosterior:
                 if name not in at_bound
             },
         )
-
-    def _fitted(self, winding: NDArray[np.int64], share: Array, start: Array, precision: float) -> Hypotheses:
-        """Fit level, load and offset to every winding and path at once, by Gauss and Newton.
-
-        Steps that do not help are damped, after Levenberg and Marquardt.
-        """
-        # The turns, mu_eq (1 + p), stay well below the whole phase.
-        turns = HIGHEST[0] * (1.0 - share)
-        highest = np.column_stack([turns, np.tile(HIGHEST[1:], (share.size, 1))])
-        values = np.clip(start, LOWEST, highest)
-        modelled, slopes = self._linearised(values, winding, share)
-        misfit = self._misfit(values, modelled)
-        damping = np.zeros(share.size)
-        converged, hopeless = np.zeros(share.size, np.bool_), np.zeros(share.size, np.bool_)
-        for done in range(MOST_ROUNDS):
-            k = np.flatnonzero(~converged & ~hopeless)
-            if k.size == 0:
-                break
-            curvature = np.einsum("nri,nrj->nij", slopes[k], slopes[k]) + WIDEST
-            diagonal = np.einsum("nii->ni", curvature)
-            downhill = np.einsum("nri,nr->ni", slopes[k], self._rows(values[k], modelled[k]))
-            if done >= ROUNDS_OF_ALL:
-                whole = np.linalg.solve(curvature, downhill[..., np.newaxis])[..., 0]
-                promised = misfit[k] - np.einsum("ni,ni->n", downhill, whole)
-                hopeless[k] = promised > misfit.min() + HOPELESS
-            damped = curvature + (damping[k, np.newaxis] * diagonal)[:, :, np.newaxis] * np.eye(3)
-            step = -np.linalg.solve(damped, downhill[..., np.newaxis])[..., 0]
-            moved = np.clip(values[k] + np.clip(step, -LONGEST_STEP, LONGEST_STEP), LOWEST, highest[k])
-            near = (np.abs(moved - values[k]) * np.sqrt(diagonal) < precision).all(axis=1)
-            converged[k] = near
-            k, moved = k[~near], moved[~near]
-            if k.size == 0:
-                continue
-            there, slopes_there = self._linearised(moved, winding[k], share[k])
-            fallen = self._misfit(moved, there)
-            better = fallen <= misfit[k]
-            shorter = np.maximum(FIRST_DAMPING, 4.0 * damping[k])
-            longer = np.where(damping[k] > FIRST_DAMPING, damping[k] / 4.0, 0.0)
-            damping[k] = np.where(better, longer, shorter)
-            taken = k[better]
-            values[taken], modelled[taken], slopes[taken], misfit[taken] = (
-                moved[better], there[better], slopes_there[better], fallen[better],
-            )  # fmt: skip
-        curvature = np.einsum("nri,nrj->nij", slopes, slopes) + WIDEST
-        weighted = np.einsum("nri,rs->nis", slopes[:, :4], self._whitening)
-        response = np.linalg.inv(curvature) @ weighted
-        scatter = np.einsum("nir,rs,nis->ni", response, self._refinement.noise, response)
-        left = self._measured - modelled
-        return Hypotheses(
-            winding=winding,
-            share=share,
-            values=values,
-            scatter=np.sqrt(scatter),
-            misfit=misfit,
-            log_evidence=-0.5 * (misfit + np.linalg.slogdet(curvature)[1]),
-            response=response,
-            left=left[:, 2] + 1j * left[:, 3],
-            converged=converged,
-        )
-
-    def _linearised(self, values: Array, winding: NDArray[np.int64], share: Array) -> tuple[Array, Array]:
-        """Return modelled components (n, 4) and the slopes of `_rows` (n, 6, 3)."""
-        n, unknowns = values.shape
-        moves = np.concatenate([np.zeros((1, unknowns)), np.diag(STEPS)])
-        around = (values + moves[:, np.newaxis, :]).reshape(-1, unknowns)
-        seen = self._modelled(around, np.tile(winding, 1 + unknowns), np.tile(share, 1 + unknowns))
-        here, *beside = seen.reshape(1 + unknowns, n, 4)
-        known = beliefs(values[:, 2], values[:, 1])
-        slopes = np.zeros((n, 6, unknowns))
-        slopes[:, :4] = np.einsum("rs,kns->nrk", self._whitening, np.stack(beside) - here) / STEPS
-        slopes[:, 4, 2] = known.offset_slope
-        slopes[:, 5, 1] = known.load_slope
-        return here, slopes
-
-    def _rows(self, values: Array, modelled: Array) -> Array:
-        """Modelled minus measured components over their standard deviation, and the priors' rows, (n, 6)."""
-        known = beliefs(values[:, 2], values[:, 1])
-        whitened = (modelled - self._measured) @ self._whitening.T
-        return np.column_stack([whitened, known.offset, known.load])
-
-    def _modelled(self, values: Array, winding: NDArray[np.int64], share: Array) -> Array:
-        self.evaluations += len(values)
-        return components(self._refinement.running.state(_candidates(values, winding, share)).current)
-
-    def _misfit(self, values: Array, modelled: Array) -> Array:
-        rows = (modelled - self._measured) @ self._whitening.T
-        return np.asarray(np.sum(rows**2, axis=1) + beliefs(values[:, 2], values[:, 1]).misfit)
-
-
-def _candidates(values: Array, winding: NDArray[np.int64], share: Array) -> Candidates:
-    return Candidates(
-        fault_level=np.ascontiguousarray(values[:, 0]),
-        winding=winding,
-        load_level=np.ascontiguousarray(values[:, 1]),
-        time_offset_s=np.ascontiguousarray(values[:, 2]),
-        path_ratio=share / (1.0 - share),
-    )
