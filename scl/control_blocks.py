@@ -18,7 +18,7 @@ from scl.control_block_model import (
 )
 from scl.document import Document
 from scl.multicast_addresses import MulticastAddresses
-from scl.templates import trigger_options
+from scl.trigger_options import trigger_options
 
 MOST_INSTANCES = 99
 SAMPLE_MODES = ("SmpPerPeriod", "SmpPerSec", "SecPerSmp")

@@ -7,8 +7,9 @@ from scl.data_model import DataObject
 from scl.data_sets import DataSetReader
 from scl.document import Document
 from scl.errors import SclError
-from scl.ied_model import AccessPoint, Ied, LogicalDevice, LogicalNode
+from scl.ied_model import AccessPoint, Ied, LogicalDevice
 from scl.instance_values import InstanceValues
+from scl.logical_node import LogicalNode
 from scl.multicast_addresses import MulticastAddresses
 from scl.templates import NodeType, Templates
 

@@ -20,7 +20,8 @@ from scl.control_block_model import (
 )
 from scl.data_model import DataAttribute, DataObject, FunctionalConstraint
 from scl.errors import SclError
-from scl.ied_model import Ied, LogicalDevice, LogicalNode
+from scl.ied_model import Ied, LogicalDevice
+from scl.logical_node import LogicalNode
 
 LONGEST_WORD = 128
 LONGEST_LINE_BYTES = 1000

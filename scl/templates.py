@@ -15,6 +15,7 @@ from lxml import etree
 from scl.data_model import DataAttribute, DataObject, Enumeration, FunctionalConstraint, TriggerOptions
 from scl.document import Document, decimal
 from scl.errors import SclError
+from scl.trigger_options import trigger_options
 from scl.type_extents import DEEPEST_NESTING, Extent, UnboundedTypeError, check_extent
 from scl.xml_file import content
 
@@ -341,39 +342,6 @@ class Templates:
                     self._document.note(value, f"ord={value.get('ord')!r} is no number: literal left out")
             self._enumerations[type_id] = Enumeration(type_id, tuple(literals))
         return self._enumerations[type_id]
-
-
-def trigger_options(
-    document: Document, element: etree._Element | None, *, general_interrogation: bool
-) -> TriggerOptions:
-    """Read dchg, qchg, dupd, period and gi of a DA or TrgOps element.
-
-    Parameters
-    ----------
-    document : Document
-        The document.
-    element : lxml.etree._Element or None
-        The element; None has the defaults.
-    general_interrogation : bool
-        Whether to read gi, which is set by default in TrgOps.
-
-    Returns
-    -------
-    TriggerOptions
-        The options.
-    """
-    options = 0
-    for attribute, option in (
-        ("dchg", TriggerOptions.DATA_CHANGE),
-        ("qchg", TriggerOptions.QUALITY_CHANGE),
-        ("dupd", TriggerOptions.DATA_UPDATE),
-        ("period", TriggerOptions.INTEGRITY),
-    ):
-        if document.boolean(element, attribute):
-            options |= option.value
-    if general_interrogation and document.boolean(element, "gi", default=True):
-        options |= TriggerOptions.GENERAL_INTERROGATION.value
-    return TriggerOptions(options)
 
 
 def initial_value(document: Document, element: etree._Element) -> str | None:

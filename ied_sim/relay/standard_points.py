@@ -9,7 +9,8 @@ from typing import Final
 
 from ied_sim.profiles.profile import Points
 from scl.data_model import DataAttribute, DataObject, FunctionalConstraint
-from scl.ied_model import Ied, LogicalNode
+from scl.ied_model import Ied
+from scl.logical_node import LogicalNode
 
 _STANDARD_NAMES: Final[Mapping[str, tuple[tuple[str, str], ...]]] = {
     "trigger": (("RBGGIO1", "SPCSO01"), ("RDRE", "RcdTrg")),

@@ -8,7 +8,7 @@ import mms
 import scl
 from mms import FunctionalConstraint
 from scl import Scl, SclError
-from scl.ied_model import LogicalNode
+from scl.logical_node import LogicalNode
 from scl.model_text import model_text
 from testing.relays.browsing import served
 from tests.scl.documents import NODE_ZERO, TEMPLATES, scl_text, write_scl
