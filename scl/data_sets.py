@@ -5,9 +5,10 @@ from functools import lru_cache
 
 from lxml import etree
 
+from scl.attribute_values import decimal
 from scl.control_block_model import DataSet, DataSetMember
 from scl.data_model import FunctionalConstraint
-from scl.document import NAME, Document, decimal
+from scl.document import NAME, Document
 from scl.ied_model import Ied
 
 LONGEST_REFERENCE = 129

@@ -3,13 +3,13 @@
 import re
 from collections import defaultdict
 from collections.abc import Iterator
-from functools import lru_cache
 from pathlib import Path
 
 from lxml import etree
 
+from scl.attribute_values import boolean, decimal
 from scl.errors import Finding, SclError
-from scl.xml_file import LARGEST_FILE_BYTES, parse
+from scl.xml_file import EXCERPT, LARGEST_FILE_BYTES, excerpt, parse
 
 NAMESPACE = "http://www.iec.ch/61850/2003/SCL"
 NAMESPACES = re.compile(r"https?://www\.iec\.ch/61850/[0-9]{4}/SCL[/#]?", re.IGNORECASE)
@@ -17,9 +17,6 @@ NAMESPACES = re.compile(r"https?://www\.iec\.ch/61850/[0-9]{4}/SCL[/#]?", re.IGN
 
 NAME = re.compile(r"[A-Za-z0-9_-]{1,64}")
 IED_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}")
-IDENTITY = ("name", "id", "inst", "iedName", "apName", "prefix", "lnClass", "lnType", "type", "doName")
-_BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
-EXCERPT = 60
 MOST_FINDINGS = 1000
 
 
@@ -80,7 +77,7 @@ class Document:
         return kind(
             self.path,
             line=_line(element),
-            element=_excerpt(element),
+            element=excerpt(element),
             expected=expected,
             found=found if len(found) <= 2 * EXCERPT else found[: 2 * EXCERPT] + "...",
         )
@@ -110,7 +107,7 @@ class Document:
             What is left out, in words.
         """
         if isinstance(reason, SclError):
-            elsewhere = reason.element and reason.element != _excerpt(element)
+            elsewhere = reason.element and reason.element != excerpt(element)
             where = f" at line {reason.line}, {reason.element}" if elsewhere else ""
             reason = f"expected {reason.expected}, found {reason.found}{where}"
         self._add(self.omissions, element, f"{what}: {reason}", left_out=True)
@@ -119,7 +116,7 @@ class Document:
         if len(findings) == MOST_FINDINGS:
             message = "more is left out: not listed" if left_out else "more is odd: not listed"
         if len(findings) <= MOST_FINDINGS:
-            findings.append(Finding(_line(element), _excerpt(element), message, left_out))
+            findings.append(Finding(_line(element), excerpt(element), message, left_out))
 
     def is_own(self, element: etree._Element) -> bool:
         """Tell whether an element is of the SCL namespace, not a vendor's.
@@ -384,9 +381,7 @@ class Document:
         text = None if element is None else element.get(attribute)
         if element is None or text is None:
             return default
-        value = _BOOLEANS.get(text)
-        if value is None:
-            value = _BOOLEANS.get(text.strip().lower())
+        value = boolean(text)
         if value is None:
             self.note(
                 element, f"{attribute}={text!r} is neither true nor false: taken as {str(default).lower()}"
@@ -395,31 +390,5 @@ class Document:
         return value
 
 
-@lru_cache(maxsize=8192)
-def decimal(text: str) -> int | None:
-    """Read a decimal number of at most 19 digits.
-
-    Parameters
-    ----------
-    text : str
-        The text, perhaps between blanks.
-
-    Returns
-    -------
-    int or None
-        The number; None for anything else.
-    """
-    stripped = text.strip()
-    return int(stripped) if re.fullmatch(r"[0-9]{1,19}", stripped) else None
-
-
 def _line(element: etree._Element) -> int:
     return element.sourceline or 0
-
-
-def _excerpt(element: etree._Element) -> str:
-    """Shorten a start tag for a message: its name and the attributes that identify it."""
-    name = etree.QName(element).localname
-    identity = [f'{key}="{element.get(key)}"' for key in IDENTITY if element.get(key) is not None]
-    text = " ".join([name, *identity])
-    return f"<{text if len(text) <= EXCERPT else text[:EXCERPT] + '...'}>"

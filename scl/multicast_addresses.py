@@ -5,8 +5,9 @@ from collections.abc import Mapping
 
 from lxml import etree
 
+from scl.attribute_values import decimal
 from scl.control_block_model import MulticastAddress
-from scl.document import Document, decimal
+from scl.document import Document
 from scl.xml_file import content
 
 MAC = re.compile(r"(?:[0-9A-Fa-f]{2}[-:]?){5}[0-9A-Fa-f]{2}")

@@ -12,8 +12,9 @@ from dataclasses import dataclass, replace
 
 from lxml import etree
 
+from scl.attribute_values import decimal
 from scl.data_model import DataAttribute, DataObject, Enumeration, FunctionalConstraint, TriggerOptions
-from scl.document import Document, decimal
+from scl.document import Document
 from scl.errors import SclError
 from scl.trigger_options import trigger_options
 from scl.type_extents import DEEPEST_NESTING, Extent, UnboundedTypeError, check_extent

@@ -14,6 +14,9 @@ from scl.errors import SclError
 LARGEST_FILE_BYTES = 256 * 1024 * 1024
 UNDECLARED_PREFIX = etree.ErrorTypes.NS_ERR_UNDEFINED_NAMESPACE
 """Tools write xsi:type and forget to declare xsi. The XML itself is well-formed."""
+EXCERPT = 60
+"""Characters of what a message quotes."""
+IDENTITY = ("name", "id", "inst", "iedName", "apName", "prefix", "lnClass", "lnType", "type", "doName")
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,3 +109,22 @@ def content(element: etree._Element) -> str:
         The text.
     """
     return (element.text or "").strip()
+
+
+def excerpt(element: etree._Element) -> str:
+    """Shorten a start tag for a message: its name and the attributes that identify it.
+
+    Parameters
+    ----------
+    element : lxml.etree._Element
+        The element.
+
+    Returns
+    -------
+    str
+        The text.
+    """
+    name = etree.QName(element).localname
+    identity = [f'{key}="{element.get(key)}"' for key in IDENTITY if element.get(key) is not None]
+    text = " ".join([name, *identity])
+    return f"<{text if len(text) <= EXCERPT else text[:EXCERPT] + '...'}>"
