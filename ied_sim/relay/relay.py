@@ -7,9 +7,8 @@ from math import inf
 from pathlib import Path
 
 from core.units import NANOSECONDS_PER_SECOND
-from ied_sim.errors import SimulatorError
 from ied_sim.front import RelayProxies
-from ied_sim.misbehaviour import MADE_BY_PROXY, Kind, MisbehaviourState
+from ied_sim.misbehaviour import Kind, MisbehaviourState
 from ied_sim.monitoring.journal import Journal
 from ied_sim.monitoring.metering import Metering
 from ied_sim.monitoring.motor_monitor import MotorMonitor
@@ -21,6 +20,7 @@ from ied_sim.relay.configuration import RelayConfiguration
 from ied_sim.relay.controls import RelayControls
 from ied_sim.relay.event_files import EventFiles
 from ied_sim.relay.event_recorder import Capture, EventRecorder
+from ied_sim.relay.listening import listening_address
 from ied_sim.relay.misbehaviour import RelayMisbehaviour
 from ied_sim.relay.plant_clock import PlantClock
 from ied_sim.relay.points import RelayPoints
@@ -30,7 +30,7 @@ from ied_sim.relay.server import RelayServer
 from ied_sim.relay.settings import relay_settings
 from ied_sim.relay.values import RelayValues
 from ied_sim.texts import RelaySnapshot, TextMaker, texts
-from mms import MOST_CONNECTIONS, Identity, Server
+from mms import Identity, Server
 from scl import Address, Scl
 from scl.model_text import model_text
 
@@ -145,7 +145,15 @@ class Relay:
             self._points,
             profile,
             self._clock,
-            address=self._listening_at(address, proxies),
+            address=listening_address(
+                ied_name,
+                address,
+                configuration,
+                self.misbehaviour_state,
+                proxies,
+                report_ids=self._points.report_ids(),
+                overflow_server=lambda: self._relay_server.open_overflow_server(),
+            ),
             root=root,
             staging=staging,
             operated=self._controls.operate,
@@ -357,35 +365,6 @@ class Relay:
             capacity=self._configuration.recorder.capacity,
             prefix=profile.files.name,
             formats=profile.record.written(),
-        )
-
-    def _listening_at(self, address: Address, proxies: RelayProxies | None) -> Address:
-        """Return where the server listens: behind a proxy if clients must see what the server cannot do."""
-        files = self._configuration.profile.files
-        rewritten = bool(self.misbehaviour_state.kinds & MADE_BY_PROXY) or (
-            files is not None
-            and (files.separator != "/" or files.listed != "path" or files.entries_per_listing is not None)
-        )
-        sessions = self._configuration.profile.sessions
-        encrypted = self._configuration.access.tls is not None
-        if encrypted and rewritten:
-            raise SimulatorError(
-                f"{self.name}: its profile or scenario needs a front between relay and clients, which could "
-                "not read TLS; take another profile (sel-710-ed2, say), or leave out tls or the misbehaviour"
-            )
-        if encrypted or not (rewritten or sessions > MOST_CONNECTIONS):
-            return address
-        if proxies is None:
-            raise SimulatorError(
-                f"{self.name}: its profile or scenario needs a front, and it has no place for one"
-            )
-        return proxies.add(
-            address,
-            files,
-            self.misbehaviour_state,
-            self._points.report_ids(),
-            sessions=sessions,
-            overflow_server=lambda: self._relay_server.open_overflow_server(),
         )
 
     def _text(self, maker: TextMaker) -> Callable[[], bytes]:

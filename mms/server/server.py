@@ -24,7 +24,7 @@ from mms.server.handshake_limit import end_connections_after
 from mms.server.model import Model
 from mms.server.pump import ServerPump
 from mms.server.read_access import ReadHandler
-from mms.server.services import MOST_CONNECTIONS, Identity, Services, create_server
+from mms.server.services import MOST_CONNECTIONS, Identity, Services, create_server, name_server
 from mms.values import Quality, Value
 
 _TURN_DELAY_AFTER_REQUEST_S: Final = 0.01
@@ -122,14 +122,11 @@ class Server:
                 self._model.destroy()
                 raise
         except BaseException:
-            self._destroy_tls()
+            if self._tls is not None:
+                self._tls.destroy()
             raise
         self._attributes = Attributes(self._lib, self._model, self._server)
-        self._lib.IedServer_setLocalIpAddress(self._server, address.encode("ascii"))
-        if identity is not None:
-            names = (identity.vendor, identity.model, identity.revision)
-            encoded = (name.encode("ascii", "replace") for name in names)
-            self._lib.IedServer_setServerIdentity(self._server, *encoded)
+        name_server(self._lib, self._server, address, identity)
         self._handlers = Handlers(self._lib, self._model, self._server, self._attributes)
         if authenticate is not None:
             self._handlers.authenticate(authenticate)
@@ -393,13 +390,10 @@ class Server:
             self._state = _State.STOPPED
             self._lib.IedServer_destroy(self._server)
             self._server = 0
-            self._destroy_tls()
+            if self._tls is not None:
+                self._tls.destroy()
             self._model.destroy()
             self._handlers.clear()
-
-    def _destroy_tls(self) -> None:
-        if self._tls is not None:
-            self._tls.destroy()
 
     def _require_alive(self, operation: str) -> None:
         if self._state is _State.STOPPED:

@@ -116,3 +116,23 @@ def create_server(lib: ctypes.CDLL, model: int, tls: int | None, services: Servi
     for constraint in (FunctionalConstraint.SP, FunctionalConstraint.SV, FunctionalConstraint.SE):
         lib.IedServer_setWriteAccessPolicy(server, int(constraint), _DENY)
     return int(server)
+
+
+def name_server(lib: ctypes.CDLL, server: int, address: str, identity: Identity | None) -> None:
+    """Tell the library where a server listens, and what it answers to the Identify service.
+
+    Parameters
+    ----------
+    lib : ctypes.CDLL
+        The library.
+    server : int
+        Pointer to the IedServer.
+    address : str
+        IP address.
+    identity : Identity or None
+        The answer; None for the library's own.
+    """
+    lib.IedServer_setLocalIpAddress(server, address.encode("ascii"))
+    if identity is not None:
+        names = (identity.vendor, identity.model, identity.revision)
+        lib.IedServer_setServerIdentity(server, *(name.encode("ascii", "replace") for name in names))
