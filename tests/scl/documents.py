@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+import scl
+
 NAMESPACE = "http://www.iec.ch/61850/2003/SCL"
 
 TEMPLATES = """
@@ -27,6 +29,7 @@ TEMPLATES = """
   <EnumType id="SIUnit"><EnumVal ord="5">A</EnumVal><EnumVal ord="29">V</EnumVal></EnumType>
 """
 
+MEMBER = '<FCDA lnClass="GGIO" lnInst="1" doName="Ind1" fc="ST"/>'
 NODE_ZERO = '<LN0 lnClass="LLN0" inst="" lnType="LLN0"/>'
 NODES = '<LN lnClass="GGIO" inst="1" lnType="GGIO"/>'
 
@@ -66,3 +69,11 @@ def scl_text(
 def write_scl(path: Path, text: str) -> Path:
     path.write_text(text, encoding="utf-8")
     return path
+
+
+def read(tmp_path: Path, **parts: str) -> scl.Scl:
+    return scl.read(write_scl(tmp_path / "relay.cid", scl_text(**parts)))
+
+
+def messages(read_scl: scl.Scl) -> str:
+    return "\n".join(map(str, read_scl.warnings))
