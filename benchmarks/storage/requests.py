@@ -77,6 +77,8 @@ TIMED: Mapping[str, tuple[str, ...]] = {
     ),
     "/api/v1/motors/{name}/condition": (*_MOTOR, "{busy}?history=100"),
     "/api/v1/motors/{name}/condition/history": (*_MOTOR, "{busy}?limit=1000", "{busy}?cursor={deep}"),
+    "/api/v1/motors/{name}/parameters": _MOTOR,
+    "/api/v1/motors/{name}/parameters/trend": _TREND,
     "/api/v1/motors/{name}/rotor": _MOTOR,
     "/api/v1/motors/{name}/rotor/trend": _TREND,
     "/api/v1/motors/{name}/supply/trend": _TREND,

@@ -1,7 +1,9 @@
 """What the records of a motor tell of its parameters while it runs."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Any, Self
 
 
 class TrackingState(StrEnum):
@@ -170,3 +172,41 @@ class TrackedParameters:
             "causes": [str(one) for one in self.causes],
             "reasons": list(self.reasons),
         }
+
+    @classmethod
+    def from_dict(cls, document: Mapping[str, Any]) -> Self:
+        """Return the finding that a document is of.
+
+        Parameters
+        ----------
+        document : mapping of str to object
+            What `as_dict` returned.
+
+        Returns
+        -------
+        TrackedParameters
+            The finding.
+        """
+        interval = document["winding_excess_K_ci95"]
+        return cls(
+            state=TrackingState(document["state"]),
+            parameters=tuple(
+                TrackedParameter(
+                    **{
+                        **one,
+                        "name": ParameterName(one["name"]),
+                        "state": TrackingState(one["state"]),
+                        "change_ci95": tuple(one["change_ci95"]),
+                        "reasons": tuple(one["reasons"]),
+                    }
+                )
+                for one in document["parameters"]
+            ),
+            records=document["records"],
+            as_of_ns=document["as_of_ns"],
+            reference_complete=document["reference_complete"],
+            winding_excess_K=document["winding_excess_K"],
+            winding_excess_K_ci95=None if interval is None else tuple(interval),
+            causes=tuple(DriftCause(one) for one in document["causes"]),
+            reasons=tuple(document["reasons"]),
+        )

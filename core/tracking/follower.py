@@ -205,7 +205,7 @@ class Follower:
             return False
         self._let_time_pass(observation.time_ns)
         if self.recorder not in ("", observation.recorder):
-            self.P += other_sensors(self.motor)
+            self.meet_other_sensors()
         self.recorder = observation.recorder
         row = impedance_row(observation, self.rated, self.x)
         if self.impedance_noise.is_step(self._square(row, self.impedance_noise)):
@@ -244,6 +244,10 @@ class Follower:
         row = Row(surprise, slopes, standing**2 * (deviation**2 + CAGE_WARMER**2))
         self._take(row, Noise())
         self._look(time_ns)
+
+    def meet_other_sensors(self) -> None:
+        """Take the standing errors of the sensors for as uncertain as their class says."""
+        self.P += other_sensors(self.motor)
 
     def _look(self, time_ns: int) -> None:
         change, covariance = self.changes

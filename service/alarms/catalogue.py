@@ -70,6 +70,16 @@ CATALOGUE: Final[Mapping[AlarmKind, AlarmDescription]] = {
         "two of the latest three records show an even rotor, and none a fault; `rotor-fault` takes its "
         "place; or the motor leaves the plant",
     ),
+    AlarmKind.PARAMETER_DRIFT: AlarmDescription(
+        AlarmPriority.MEDIUM,
+        "Resistances or inductances of the motor, followed over its records, are others than in the first "
+        "ones, with load and voltage taken out.",
+        "A winding that is too hot ages fast, a rotor that gets worse damages more, and with a wrong ratio "
+        "relay and service judge wrong figures.",
+        "Do what the advice of the alarm says, at the next planned stop at the latest.",
+        "three records in a row show less than half of what is told, the motor's reference is restarted, or "
+        "the motor leaves the plant",
+    ),
     AlarmKind.MISSING_DATA: AlarmDescription(
         AlarmPriority.MEDIUM,
         "The motor has no valid record for longer than its schedule promises, and was not seen to stand.",

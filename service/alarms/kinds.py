@@ -20,6 +20,7 @@ class AlarmKind(StrEnum):
     CONDITION_WATCH = "condition-watch"
     ROTOR_FAULT = "rotor-fault"
     ROTOR_WATCH = "rotor-watch"
+    PARAMETER_DRIFT = "parameter-drift"
     MISSING_DATA = "missing-data"
     LINK_DOWN = "link-down"
     SITE_LOST = "site-lost"

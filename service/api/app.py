@@ -38,6 +38,7 @@ from service.api.reports import routes as reports
 from service.api.rotor_and_supply import routes as rotor_and_supply
 from service.api.samples import routes as samples
 from service.api.starts import routes as starts
+from service.api.tracking import routes as tracking
 from service.configuration.access import OidcSettings
 
 PREFIX = "/api/v1"
@@ -69,6 +70,7 @@ def create_app(
         conditions,
         notes,
         rotor_and_supply,
+        tracking,
         load,
         baselines,
         starts,

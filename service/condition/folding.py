@@ -18,6 +18,7 @@ from service.condition.checkpoints import is_kept
 from service.condition.errors import RecordFoldError
 from service.condition.motor_data import MotorHistory, motor_of
 from service.condition.standing import standing_document, standing_estimate
+from service.condition.tracking import Tracking
 from service.storage.records import (
     Checkpoint,
     ConditionChange,
@@ -62,6 +63,7 @@ class _Folding:
         self._bus = _Bus(due, motor)
         self._records = 0 if due.checkpoint is None else due.checkpoint.records
         self._follower = self._begun()
+        self._tracking = self._tracking_begun()
         before = due.latest_change
         self._said: Said | None = (
             None if before is None else {name: getattr(before, name) for name in TOLD_APART}
@@ -83,12 +85,19 @@ class _Folding:
             except Exception as error:
                 raise RecordFoldError(one.recording_id, f"{type(error).__name__}: {error}") from error
             if at + 1 < len(times) and times[at] < times[at + 1] and is_kept(self._records, last):
-                self._checkpoints.append(Checkpoint(times[at], self._records, self._follower.save()))
+                self._keep(times[at])
         for event in events:
             self._apply(event)
         ends = [*times[-1:], *(event.time_ns for event in self._due.events[-1:])]
         if ends:
-            self._checkpoints.append(Checkpoint(max(ends), self._records, self._follower.save()))
+            self._keep(max(ends))
+        self._tracking.follow_starts()
+
+    def _keep(self, time_ns: int) -> None:
+        """Keep a checkpoint: all up to and with this time is folded."""
+        self._tracking.follow_starts(time_ns)
+        state, tracking = self._follower.save(), self._tracking.document()
+        self._checkpoints.append(Checkpoint(time_ns, self._records, state, tracking))
 
     def result(self) -> FoldResult:
         ended = self._due.next_ns is None
@@ -103,6 +112,8 @@ class _Folding:
             condition=self._entry() if ended else None,
             standing=None if estimate is None else standing_document(estimate),
             rules=RULES,
+            tracked=self._tracking.points,
+            parameters=self._tracking.found() if ended else None,
         )
 
     def _begun(self) -> Follower:
@@ -114,6 +125,12 @@ class _Folding:
         except ValueError as error:
             raise UnreadableCheckpointError(str(error)) from error
 
+    def _tracking_begun(self) -> Tracking:
+        checkpoint, starts = self._due.checkpoint, self._due.starts
+        if checkpoint is None:
+            return Tracking.begun(self._history.at(_first_ns(self._due)), starts)
+        return Tracking.restored(self._history.at(checkpoint.time_ns), checkpoint.tracking, starts)
+
     def _fold(self, one: RecordObservation) -> None:
         self._records += 1
         observation = one.observation
@@ -122,6 +139,7 @@ class _Folding:
         except ObservationError as error:
             log.warning("record left out of the condition", recording=one.recording_id, error=str(error))
             return
+        self._tracking.follow(one)
         said = self._say()
         self._points.append(
             ConditionPoint(recording_id=one.recording_id, time_ns=observation.time_ns, **said)
@@ -130,7 +148,9 @@ class _Folding:
             self._note(said, observation.time_ns, recording_id=one.recording_id)
 
     def _apply(self, event: ConditionEvent) -> None:
-        self._follower.apply(event.event, self._history.edited_at(event.time_ns))
+        edited = self._history.edited_at(event.time_ns)
+        self._follower.apply(event.event, edited)
+        self._tracking.apply(event.event, edited)
         self._note(self._say(), event.time_ns, event_id=event.id)
 
     def _note(

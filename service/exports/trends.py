@@ -14,17 +14,23 @@ from core.rotor.finding import RotorFinding
 from core.supply.figures import SupplyFigures
 from service.exports.paging import PAGE, pages
 from service.exports.tables import Column, ColumnType, Table, text, time
-from service.storage.records import ConditionPoint, DiagnosisPoint, RotorEntry, SupplyEntry
+from service.storage.records import (
+    ConditionPoint,
+    DiagnosisPoint,
+    RotorEntry,
+    SupplyEntry,
+    TrackedPoint,
+)
 from service.storage.repository import Repository
 
-_Point = DiagnosisPoint | ConditionPoint | RotorEntry | SupplyEntry
+_Point = DiagnosisPoint | ConditionPoint | RotorEntry | SupplyEntry | TrackedPoint
 
 
 @dataclass(slots=True)
 class TrendRow:
     """A recording. diagnosed: None where a rule of retention deleted it.  said: None until it is folded.
 
-    rotor, supply: None where the recording shows nothing of them.
+    rotor, supply: None where the recording shows nothing of them.  tracked: None until it is folded.
     """
 
     motor: str
@@ -34,6 +40,7 @@ class TrendRow:
     said: ConditionPoint | None = None
     rotor: RotorFinding | None = None
     supply: SupplyFigures | None = None
+    tracked: TrackedPoint | None = None
 
 
 def _diagnosed(
@@ -60,6 +67,17 @@ def _of_rotor(
 def _of_supply(name: str, meaning: str, *, unit: str = "1") -> Column[TrendRow]:
     """Return a column of what the recording shows of the supply."""
     return Column(name, ColumnType.NUMBER, unit, meaning, lambda row: getattr(row.supply, name, None))
+
+
+def _tracked(parameter: str, meaning: str) -> Iterator[Column[TrendRow]]:
+    """Yield the columns of a parameter's change and its interval's half."""
+    for what, words in (("change", meaning), ("margin", "half of its 95 % interval")):
+        name = f"{parameter}_{what}"
+        yield Column(name, ColumnType.NUMBER, "1", words, partial(_of_tracked, name))
+
+
+def _of_tracked(name: str, row: TrendRow) -> float | None:
+    return getattr(row.tracked, name, None)
 
 
 def _severity_end(row: TrendRow, end: int) -> float | None:
@@ -122,6 +140,10 @@ TABLE: Table[TrendRow] = Table(
         _of_supply("voltage_unbalance_iec", "unbalance of the voltages, |V2| / |V1|"),
         _of_supply("voltage_unbalance_nema", "unbalance of the line voltages by NEMA MG-1"),
         _of_supply("thd_voltage", "total harmonic distortion of the voltage"),
+        *_tracked("stator_resistance", "change of R_s since the first records, the load's heat taken out"),
+        *_tracked("rotor_resistance", "change of R_r' beyond that of R_s"),
+        *_tracked("magnetising_inductance", "change of the magnetising inductance"),
+        *_tracked("leakage_inductance", "change of the total leakage"),
         text("recording_id", "id of the recording", attrgetter("recording_id")),
     ),
 )
@@ -136,11 +158,13 @@ def trends(
         said = pages(partial(repository.condition_trend, motor, from_ns=from_ns, to_ns=to_ns))
         rotor = pages(partial(repository.rotor_trend, motor, from_ns=from_ns, to_ns=to_ns))
         supply = pages(partial(repository.supply_trend, motor, from_ns=from_ns, to_ns=to_ns))
+        tracked = pages(partial(repository.tracked_trend, motor, from_ns=from_ns, to_ns=to_ns))
         sources: list[Iterator[_Point]] = [
             chain.from_iterable(diagnosed),
             chain.from_iterable(said),
             chain.from_iterable(rotor),
             chain.from_iterable(supply),
+            chain.from_iterable(tracked),
         ]
         points = merge(*sources, key=attrgetter("time_ns"))
         yield from _joined(motor, points)
@@ -162,6 +186,8 @@ def _joined(motor: str, points: Iterator[_Point]) -> Iterator[Sequence[TrendRow]
                     row.rotor = point.finding
                 case SupplyEntry():
                     row.supply = point.figures
+                case TrackedPoint():
+                    row.tracked = point
         batch += rows.values()
         if len(batch) >= PAGE:
             yield batch

@@ -86,6 +86,19 @@ def load(
     show_load(url, motor, days=days, as_json=as_json)
 
 
+@commands.command()
+def drift(
+    motor: MotorName,
+    url: Url = DEFAULT_URL,
+    *,
+    as_json: Json = False,
+) -> None:
+    """Show a motor's resistances and inductances while it runs, and what has changed them."""
+    from service.cli.drift import show_drift
+
+    show_drift(url, motor, as_json=as_json)
+
+
 recordings = typer.Typer(cls=DefaultGroup, help="List recordings that the service has, or download one.")
 commands.add_typer(recordings, name="recordings")
 

@@ -35,6 +35,7 @@ class ObservationRow(Figures, Base):
     Phasors are peak values in volts and amperes. state and the figures: null until it is folded.
     left_out: why it is not folded, because that failed; null where it is, or is to be.
     left_out_by: version of the program and its rules that left it out: another one tries again.
+    ..._change, ..._margin: of the motor's parameters from it on (core.tracking); null before a reference.
     """
 
     __tablename__ = "observations"
@@ -65,6 +66,14 @@ class ObservationRow(Figures, Base):
     left_out_by: Mapped[str | None]
     state: Mapped[State | None]
     kind: Mapped[Kind | None]
+    stator_resistance_change: Mapped[float | None] = mapped_column(Double)
+    stator_resistance_margin: Mapped[float | None] = mapped_column(Double)
+    rotor_resistance_change: Mapped[float | None] = mapped_column(Double)
+    rotor_resistance_margin: Mapped[float | None] = mapped_column(Double)
+    magnetising_inductance_change: Mapped[float | None] = mapped_column(Double)
+    magnetising_inductance_margin: Mapped[float | None] = mapped_column(Double)
+    leakage_inductance_change: Mapped[float | None] = mapped_column(Double)
+    leakage_inductance_margin: Mapped[float | None] = mapped_column(Double)
 
     __table_args__ = (
         Index("ix_observations_motor_time_ns_recording_id", "motor", "time_ns", "recording_id"),
@@ -78,6 +87,7 @@ class ConditionRow(Figures, Base):
     `Condition.as_dict()` gave; null before the first fold, as is as_of_ns.  standing: its standing asymmetry,
     for the other motors of its bus.  problem: why what came since is not folded; null while it is.
     rules: version of the rules by which all of it was judged; null before the first fold.
+    parameters: what `TrackedParameters.as_dict()` gave; null where no fold followed them yet.
     stood_ns: when the motor was last seen to stand still; null where it never was.
     """
 
@@ -93,6 +103,7 @@ class ConditionRow(Figures, Base):
     standing: Mapped[Mapping[str, object] | None]
     problem: Mapped[str | None]
     rules: Mapped[str | None]
+    parameters: Mapped[Mapping[str, object] | None]
     stood_ns: Mapped[int | None]
 
 
@@ -159,7 +170,7 @@ class ConditionEventRow(Base):
 class ConditionCheckpointRow(Base):
     """What is known of a motor once all up to and with `time_ns` is folded, to go on from there.
 
-    records: how many observations that are.
+    records: how many observations that are.  tracking: what follows its parameters (core.tracking.saving).
     """
 
     __tablename__ = "condition_checkpoints"
@@ -168,6 +179,7 @@ class ConditionCheckpointRow(Base):
     time_ns: Mapped[int] = mapped_column(primary_key=True)
     records: Mapped[int]
     state: Mapped[bytes] = mapped_column(LargeBinary)
+    tracking: Mapped[Mapping[str, object] | None]
 
 
 class FoldMarkRow(Base):

@@ -27,9 +27,11 @@ from service.storage.records.conditions import (
     ConditionPoint,
     FoldInput,
     FoldResult,
+    FollowedStart,
     MotorVersion,
     RecordObservation,
     ToObserve,
+    TrackedPoint,
 )
 from service.storage.records.deletions import Amount, AppliedRule, DeletedRows, Deletion, OldRecording
 from service.storage.records.diagnoses import (
@@ -109,6 +111,7 @@ __all__ = [
     "FleetMotor",
     "FoldInput",
     "FoldResult",
+    "FollowedStart",
     "GatewayEntry",
     "Gathering",
     "IedEntry",
@@ -147,6 +150,7 @@ __all__ = [
     "StartEntry",
     "SupplyEntry",
     "ToObserve",
+    "TrackedPoint",
     "TrendPoint",
     "User",
     "UserSession",

@@ -136,12 +136,44 @@ class RecordObservation:
 
 
 @dataclass(frozen=True, slots=True)
+class FollowedStart:
+    """What a start tells of the rotor: R_r over R_s, and its relative standard deviation."""
+
+    time_ns: int
+    rotor_over_stator: float
+    deviation: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TrackedPoint:
+    """Changes of a motor's parameters after one of its records, with half their 95 % intervals.
+
+    All are fractions; None before there is a reference.
+    """
+
+    recording_id: str
+    time_ns: int
+    stator_resistance_change: float | None = None
+    stator_resistance_margin: float | None = None
+    rotor_resistance_change: float | None = None
+    rotor_resistance_margin: float | None = None
+    magnetising_inductance_change: float | None = None
+    magnetising_inductance_margin: float | None = None
+    leakage_inductance_change: float | None = None
+    leakage_inductance_margin: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Checkpoint:
-    """What is known once all up to and with `time_ns` is folded; `records` observations."""
+    """What is known once all up to and with `time_ns` is folded; `records` observations.
+
+    tracking: what follows the parameters; None where an earlier version folded.
+    """
 
     time_ns: int
     records: int
     state: bytes
+    tracking: Mapping[str, object] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,6 +204,7 @@ class FoldInput:
     events: those up to next_ns, in their order.
     bus: the other motors of its bus.  neighbours: their observations at about the same times.
     latest_change: the last change before; None where there is none.
+    starts: what those up to next_ns tell of the rotor, in their order.
     """
 
     motor: str
@@ -186,6 +219,7 @@ class FoldInput:
     neighbours: tuple[RecordObservation, ...]
     motor_versions: tuple[MotorVersion, ...]
     latest_change: ConditionChange | None
+    starts: tuple[FollowedStart, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -195,6 +229,8 @@ class FoldResult:
     checkpoints: new ones.  kept_checkpoints: times of the earlier ones that are kept; the others go.
     condition, standing: what is said of the motor, and its standing asymmetry; None where more is to be
     folded.  rules: version of the rules by which it was judged.
+    tracked: changes of the parameters after each record.  parameters: what is said of them at the end, where
+    a condition is.
     """
 
     points: Sequence[ConditionPoint]
@@ -204,6 +240,8 @@ class FoldResult:
     condition: ConditionEntry | None
     standing: Mapping[str, object] | None = None
     rules: str | None = None
+    tracked: Sequence[TrackedPoint] = ()
+    parameters: Mapping[str, object] | None = None
 
 
 @dataclass(frozen=True, slots=True)

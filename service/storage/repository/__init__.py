@@ -12,6 +12,7 @@ from service.storage.repository.conditions.conditions import ConditionRows
 from service.storage.repository.conditions.events import ConditionEventRows
 from service.storage.repository.conditions.folding import FoldingRows
 from service.storage.repository.conditions.observations import ObservationRows
+from service.storage.repository.conditions.tracking import TrackingRows
 from service.storage.repository.history.condition_days import ConditionDayRows
 from service.storage.repository.history.conditions import PastConditionRows
 from service.storage.repository.history.metered import MeteredRows
@@ -70,6 +71,7 @@ class Repository(
     ConditionEventRows,
     ConditionRows,
     FoldingRows,
+    TrackingRows,
     StateCounts,
     MeasurementRows,
     BaselineRows,

@@ -24,6 +24,7 @@ from service.web.motor.drawings import MotorDrawings, motor_drawings
 from service.web.motor.marks import trend_marks
 from service.web.motor.measured import MeasuredValues, measured_values
 from service.web.motor.nameplate import KnownMotor, known_motor
+from service.web.motor.parameters import ParametersSection, parameters_section
 from service.web.motor.rotor import RotorSection, rotor_section
 from service.web.motor.supply import SupplySection, supply_section
 from service.web.motor.trend import SPANS, TrendSpan, told, trend_chart
@@ -56,6 +57,7 @@ class MotorPage:
     trend: MotorTrend
     rotor: RotorSection
     supply: SupplySection
+    parameters: ParametersSection
     known: KnownMotor | None
     drawings: MotorDrawings | None
     measured: MeasuredValues | None
@@ -88,6 +90,7 @@ def motor_page(context: ApiContext, name: str, span: TrendSpan, now_ns: int) -> 
         trend=_trend(repository, name, span, condition, known, now_ns),
         rotor=rotor_section(repository, name),
         supply=supply_section(repository, name),
+        parameters=parameters_section(repository, name),
         known=known,
         drawings=None
         if known is None

@@ -18,6 +18,7 @@ from service.storage.records import AlarmPlace, AlarmSpec, ConditionEntry
 from service.storage.repository.alarms.causes import clear, forget_cleared, raised_at, reopen, supersede
 from service.storage.repository.alarms.changes import change, locked
 from service.storage.repository.alarms.condition_words import ConditionWords, is_fault_level
+from service.storage.repository.alarms.drift import settle_drift_alarm
 from service.storage.repository.alarms.suppression import suppress_by_design
 from service.storage.repository.sessions import Sessions, found, record_of
 from service.storage.states import AlarmEvent, AlarmState
@@ -44,6 +45,7 @@ class ConditionAlarmRows(Sessions):
             for row in session.scalars(concerned).all():
                 motor = found(session, MotorRow, row.motor, "motor")
                 settle_alarm(session, motor, record_of(ConditionEntry, row), now_ns=now_ns, rules=rules)
+                settle_drift_alarm(session, motor, row.parameters, now_ns=now_ns)
 
 
 def settle_alarm(

@@ -37,9 +37,11 @@ from service.storage.records import (
     RecordObservation,
 )
 from service.storage.repository.alarms.conditions import settle_alarm
+from service.storage.repository.alarms.drift import settle_drift_alarm
 from service.storage.repository.conditions.fold_marks import EARLIEST_NS, mark, others_of_bus, resume
 from service.storage.repository.conditions.observations import OBSERVED, record_observation, take_in_again
 from service.storage.repository.conditions.standing_changes import TOLD, is_material
+from service.storage.repository.conditions.tracking import followed_starts, write_tracked_points
 from service.storage.repository.history.condition_days import keep_days
 from service.storage.repository.sessions import Sessions, found, only, record_of
 from service.storage.texts import storable
@@ -160,6 +162,7 @@ class FoldingRows(Sessions):
                 neighbours=_neighbours(session, motor, observations),
                 motor_versions=tuple(_versions(session, motor)),
                 latest_change=_latest_change(session, motor, done_ns),
+                starts=followed_starts(session, motor, done_ns, next_ns),
             )
 
     def finish_fold(
@@ -184,6 +187,7 @@ class FoldingRows(Sessions):
             if fold.next_ns is not None:
                 mark(session, fold.motor, fold.next_ns)
             _write_points(session, result)
+            write_tracked_points(session, result.tracked)
             after_ns = None if fold.checkpoint is None else done_ns
             keep_days(session, fold.motor, after_ns=after_ns, before_ns=fold.next_ns)
             _write_changes(session, fold, result.changes, done_ns)
@@ -194,6 +198,8 @@ class FoldingRows(Sessions):
                     setattr(row, name, figures[name])
                 motor = found(session, MotorRow, fold.motor, "motor")
                 settle_alarm(session, motor, result.condition, now_ns=now_ns, rules=rules)
+                row.parameters = result.parameters
+                settle_drift_alarm(session, motor, result.parameters, now_ns=now_ns)
                 told = None if row.standing is None else row.standing.get(TOLD)
                 if is_material(told, result.standing):
                     told = result.standing

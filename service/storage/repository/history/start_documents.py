@@ -26,6 +26,12 @@ def examined_start(figures: MotorStart, document: Mapping[str, Any] | None) -> E
     )
 
 
+def start_parameters(document: Mapping[str, Any]) -> StartParameters | None:
+    """Return what a start tells of the motor's parameters; None where it tells nothing."""
+    parameters = document["parameters"]
+    return None if parameters is None else _parameters(parameters)
+
+
 def _parameters(document: Mapping[str, Any]) -> StartParameters:
     ends = {name: tuple(interval) for name, interval in document["ci95"].items()}
     return StartParameters(**_with_tuples(document) | {"ci95": ends})

@@ -16,6 +16,7 @@ from core.starts.figures import MotorStart, StartCurve
 from service.storage.errors import NotFoundError
 from service.storage.models import MotorRow, RecordingRow, StartRow
 from service.storage.records import Cursor, Page, StartEntry
+from service.storage.repository.conditions.tracking import follow_again, followed_start
 from service.storage.repository.history.start_documents import examined_start
 from service.storage.repository.sessions import Order, Sessions, found, page_of
 
@@ -105,6 +106,8 @@ def keep_start(
     forget_start(session, recording_id)
     if start is None or not _is_finite(start.figures):
         return
+    if followed_start(time_ns, start.parameters) is not None:
+        follow_again(session, motor, time_ns)
     figures = {name: getattr(start.figures, name) for name in _FIGURES}
     model = start.model_as_dict()
     session.add(
@@ -121,6 +124,11 @@ def keep_start(
 
 def forget_start(session: Session, recording_id: str) -> None:
     """Delete what a recording showed of a start."""
+    row = session.get(StartRow, recording_id)
+    if row is None:
+        return
+    if row.model is not None:
+        follow_again(session, row.motor, row.time_ns)
     session.execute(delete(StartRow).where(StartRow.recording_id == recording_id))
 
 

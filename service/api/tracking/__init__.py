@@ -1,0 +1,1 @@
+"""Parameters of motors followed while they run."""

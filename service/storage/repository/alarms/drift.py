@@ -1,0 +1,46 @@
+"""The alarm of parameters that drift: it follows what the motor's records tell of them."""
+
+from collections.abc import Mapping
+from typing import Any, Final
+
+from sqlalchemy.orm import Session
+
+from core.tracking.finding import TrackedParameters, TrackingState
+from service.alarms.drift_rules import drift_advice, drift_reason
+from service.alarms.kinds import AlarmKind
+from service.storage.models import AlarmRow, MotorRow
+from service.storage.models.alarms import is_open
+from service.storage.records import AlarmPlace, AlarmSpec
+from service.storage.repository.alarms.causes import clear, forget_cleared, locked_place, raised_at
+from service.storage.repository.alarms.changes import locked
+from service.storage.repository.alarms.suppression import suppress_by_design
+
+SUBJECT: Final = "parameters"
+OVER: Final = "the parameters are as in the first records again, or follow from another reference"
+
+
+def settle_drift_alarm(
+    session: Session, motor: MotorRow, document: Mapping[str, Any] | None, *, now_ns: int
+) -> None:
+    """Make the alarm of a motor's parameters say what its records say. document: of `as_dict`."""
+    found = None if document is None else TrackedParameters.from_dict(document)
+    drifts = found is not None and found.state is TrackingState.DRIFTING
+    if found is not None and drifts and motor.in_service:
+        spec = AlarmSpec(
+            AlarmKind.PARAMETER_DRIFT,
+            reason=drift_reason(found),
+            subject=SUBJECT,
+            one_of_kind=True,
+            advice=drift_advice(found.causes),
+        )
+        raised_at(session, locked_place(session, AlarmPlace(motor=motor.name)), spec, now_ns=now_ns)
+        return
+    about = (AlarmRow.motor == motor.name, AlarmRow.kind == AlarmKind.PARAMETER_DRIFT)
+    rows = locked(session, *about, is_open())
+    for row in rows:
+        suppress_by_design(session, row, now_ns=now_ns)
+    standing = [row.id for row in rows if row.cleared_ns is None]
+    if standing:
+        why = OVER if motor.in_service else "the motor left the plant"
+        clear(session, now_ns, AlarmRow.id.in_(standing), why=why)
+        forget_cleared(session, AlarmRow.motor == motor.name)
