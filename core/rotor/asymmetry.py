@@ -15,12 +15,15 @@ from core.rotor.cage_leakage import LEAST, MOST, USUAL, without_leakage
 from core.rotor.rotor_circuit import RotorLines, rotor_lines
 from core.rotor.running_point import errors, running_point
 from core.rotor.sidebands import Lines, fit_lines, without_lines
+from core.rotor.unknown_slip import beyond_a_ripple
 
 LOWEST_RATIO, HIGHEST_RATIO = 0.8, 1.4
 """Where the line may stand, over twice the model's slip: a rotor that is warm, or has broken bars, slips more
 than its parameters say."""
 FEWEST_TURNS = 1.2
 """Least distance of a line from the fundamental, in cycles of it over the record."""
+FEWEST_TURNS_OF_ANY = 2.5
+"""The same of a line whose place is unknown."""
 POINTS_A_TURN = 4.0
 """Fineness of the search; a line half a step off keeps 97 % of its amplitude."""
 FINER = 10
@@ -107,7 +110,7 @@ def measure_asymmetry(baseband: Baseband, angle: Array, motor: Motor) -> Asymmet
     first, last = record.search
     kappa = np.linspace(first, last, max(2, ceil((last - first) * POINTS_A_TURN) + 1)) / record.turns
     lines = fit_lines(baseband, angle, kappa)
-    greatest = int(np.argmax(np.abs(record.meaning(lines, kappa).asymmetry)))
+    greatest = int(np.argmax(record.sizes(lines, kappa)))
     if resistance_ratios(motor).are_open:
         found = _measured(record, *_more_finely(record, float(kappa[greatest])))
     else:
@@ -141,7 +144,8 @@ class _Record:
         """Distances between which the line is looked for, in cycles over the record."""
         turns, ratios = self.turns, resistance_ratios(self.motor)
         lowest, highest = LOWEST_RATIO * ratios.least, HIGHEST_RATIO * ratios.most
-        return max(lowest * turns, FEWEST_TURNS), min(highest * turns, self.highest)
+        fewest = FEWEST_TURNS_OF_ANY if ratios.are_open else FEWEST_TURNS
+        return max(lowest * turns, fewest), min(highest * turns, self.highest)
 
     def around(self, kappa: float) -> Array:
         """Return ratios outside the search, a cycle over the record apart, shape (references,).
@@ -165,6 +169,13 @@ class _Record:
         distance = kappa * (2.0 * pi * self.turns / self.baseband.span_s)
         return rotor_lines(lines, distance, running_point(record, known), known)
 
+    def sizes(self, lines: Lines, kappa: Array) -> Array:
+        """Return the asymmetry that no swing of the load explains, shape (pairs,)."""
+        if not resistance_ratios(self.motor).are_open:
+            return np.abs(self.meaning(lines, kappa).asymmetry)
+        distance = kappa * (2.0 * pi * self.turns / self.baseband.span_s)
+        return beyond_a_ripple(lines, distance, running_point(self.baseband, self.motor), self.motor)
+
     def asymmetry(
         self, line: Lines, kappa: Array, motor: Motor | None = None, baseband: Baseband | None = None
     ) -> complex:
@@ -176,7 +187,7 @@ def _more_finely(record: _Record, kappa: float) -> tuple[Lines, Array]:
     """Return the pair of lines of the greatest asymmetry near a place, and its own: it tells the slip."""
     near = kappa + np.linspace(-1.0, 1.0, 2 * FINER + 1) / (POINTS_A_TURN * record.turns)
     lines = fit_lines(record.baseband, record.angle, near)
-    greatest = int(np.argmax(np.abs(record.meaning(lines, near).asymmetry)))
+    greatest = int(np.argmax(record.sizes(lines, near)))
     return lines.at(greatest), near[greatest : greatest + 1]
 
 
@@ -187,7 +198,7 @@ def _measured(record: _Record, line: Lines, kappa: Array) -> Asymmetry:
     noise = _mean_square(beside.asymmetry)
     first, last = record.search
     found = record.meaning(line, kappa)
-    value = complex(found.asymmetry[0])
+    value, size = complex(found.asymmetry[0]), float(record.sizes(line, kappa)[0])
     ripple = _of_the_ripple_alone(record, line, kappa)
     scale, leak = MODEL_SHARE * abs(value), 0.0
     for motor, wrong, deviations in errors(baseband, record.motor):
@@ -208,10 +219,10 @@ def _measured(record: _Record, line: Lines, kappa: Array) -> Asymmetry:
     )
     return Asymmetry(
         ratio=float(kappa[0]),
-        value=resistive(abs(value), factor=usual),
+        value=resistive(size, factor=usual),
         interval=(
-            resistive(abs(value) - spread, factor=most),
-            resistive(abs(value) + spread, factor=least),
+            resistive(size - spread, factor=most),
+            resistive(size + spread, factor=least),
         ),
         threshold=threshold,
         detection_limit=threshold + NINE_IN_TEN * radial,

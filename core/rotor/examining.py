@@ -6,7 +6,7 @@ from core.diagnosis.acceptance import Accepted
 from core.diagnosis.verdict import Diagnosis
 from core.machines.parameters import Motor
 from core.machines.wound_rotor import resistance_at_rings_ohm, resistance_ratios
-from core.rotor.asymmetry import measure_asymmetry
+from core.rotor.asymmetry import FEWEST_TURNS_OF_ANY, measure_asymmetry
 from core.rotor.baseband import Baseband, baseband_of
 from core.rotor.finding import RotorFinding, RotorState, decibels, load_bin
 from core.rotor.judgement import judge
@@ -15,6 +15,8 @@ from core.rotor.sidebands import sideband_angle
 
 FEWEST_TURNS = 1.5
 """Least distance of the sidebands from the fundamental, in cycles of it over the record."""
+FEWEST_TURNS_TOLD = 4.0
+"""The same where the slip is unknown: a line nearer by may be the edge of one that is nearer still."""
 LOWEST_SLIP, HIGHEST_SLIP = 1e-4, 0.2
 HIGHEST_SLIP_AT_RINGS = 0.28
 """The same of a wound rotor with resistance at its rings; the sidebands keep away from the supply's line."""
@@ -63,16 +65,17 @@ def examine_rotor(accepted: Accepted, diagnosis: Diagnosis) -> RotorFinding:
     angle = sideband_angle(baseband, slip_course(baseband, motor, slip))
     found = measure_asymmetry(baseband, angle, motor)
     state, reasons = judge(found, motor.kind, assumed=case.voltages_assumed, typical=motor.is_typical)
-    if ratios.are_open and found.is_detected:
-        told_slip = slip * found.ratio
-        reasons.append(_told_of_rings(motor, found.ratio, told_slip))
-    elif ratios.are_open:
-        lowest_turns = 2.0 * slip * ratios.least * case.frequency_hz * duration_s
-        if state is RotorState.HEALTHY and lowest_turns < FEWEST_TURNS:
+    if ratios.are_open:
+        turns = 2.0 * slip * case.frequency_hz * duration_s
+        if found.is_detected and turns * found.ratio >= FEWEST_TURNS_TOLD:
+            told_slip = slip * found.ratio
+            reasons.append(_told_of_rings(motor, found.ratio, told_slip))
+        elif found.is_detected or turns * ratios.least < FEWEST_TURNS_OF_ANY:
             return unsupported(SLIP_TOO_SMALL)
-        if state is RotorState.HEALTHY and slip * ratios.most > highest_slip:
+        elif slip * ratios.most > highest_slip:
             return unsupported(SLIP_TOO_LARGE)
-        reasons.append("the slip is not known: no sideband tells the resistance at the slip rings")
+        else:
+            reasons.append("the slip is not known: no sideband tells the resistance at the slip rings")
     return RotorFinding(
         state=state,
         lower_sideband_dB=decibels(found.lower),

@@ -23,7 +23,7 @@ The load's share of the ripple is what the equation of motion lacks, T_load = T_
 from dataclasses import dataclass
 
 from core.machines.base import Array
-from core.machines.parameters import Motor
+from core.machines.parameters import MachineParameters, Motor
 from core.machines.steady_state import ComplexArray
 from core.rotor.running_point import RunningPoint
 from core.rotor.sidebands import Lines
@@ -69,18 +69,10 @@ def rotor_lines(lines: Lines, distance: Array, point: RunningPoint, motor: Motor
         The rotor's asymmetry and the load's torque.
     """
     machine, p = motor.parameters, motor.nameplate.pole_pairs
-    R_s, L_ls, L_lr = machine.stator_resistance_ohm, machine.stator_leakage_H, machine.rotor_leakage_H
-    L_m, w_s, lam = machine.magnetising_inductance_H, point.angular_frequency, point.slip_over_resistance
+    w_s, lam = point.angular_frequency, point.slip_over_resistance
     I_s, Psi_s, Psi_r, I_r = point.current, point.stator_flux, point.rotor_flux, point.rotor_current
-
-    def rotor_side(line: ComplexArray, w: Array) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
-        v, i_s = line.T
-        psi_s = (v - R_s * i_s) / (1j * w)
-        i_r = (psi_s - (L_ls + L_m) * i_s) / L_m
-        return psi_s, i_r, L_lr * i_r + L_m * (i_s + i_r)
-
-    psi_s_upper, i_r_upper, psi_r_upper = rotor_side(lines.upper, w_s + distance)
-    psi_s_lower, i_r_lower, psi_r_lower = rotor_side(lines.lower, w_s - distance)
+    psi_s_upper, i_r_upper, psi_r_upper = rotor_side(lines.upper, w_s + distance, machine)
+    psi_s_lower, i_r_lower, psi_r_lower = rotor_side(lines.lower, w_s - distance, machine)
     ripple = (i_r_upper + 3j * lam * psi_r_upper) / (1j * Psi_r)  # w / R_r
     asymmetry = (1j * ripple.conj() * Psi_r - i_r_lower + 1j * lam * psi_r_lower) / I_r.conjugate()
     # T_e = p Im(i_s conj(psi_s)); the amplitude of what is real is twice its part at +Omega.
@@ -94,3 +86,29 @@ def rotor_lines(lines: Lines, distance: Array, point: RunningPoint, motor: Motor
     inertia_torque = 2.0 * (machine.inertia_kgm2 / p) * 1j * distance * ripple * R_r
     rated = motor.nameplate.rated_torque_Nm
     return RotorLines(asymmetry, (torque - inertia_torque) / rated, inertia_torque / rated)
+
+
+def rotor_side(
+    line: ComplexArray, w: Array, machine: MachineParameters
+) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+    """Return what a line at the terminals is in the machine.
+
+    Parameters
+    ----------
+    line : ndarray of complex, shape (lines, 2)
+        Amplitudes of voltage and current.
+    w : ndarray, shape (lines,)
+        Angular frequency of each line [rad/s].
+    machine : MachineParameters
+        Parameters of the machine.
+
+    Returns
+    -------
+    tuple of ndarray of complex, shape (lines,)
+        psi_s [V s], i_r [A] and psi_r [V s].
+    """
+    L_ls, L_m = machine.stator_leakage_H, machine.magnetising_inductance_H
+    v, i_s = line.T
+    psi_s = (v - machine.stator_resistance_ohm * i_s) / (1j * w)
+    i_r = (psi_s - (L_ls + L_m) * i_s) / L_m
+    return psi_s, i_r, machine.rotor_leakage_H * i_r + L_m * (i_s + i_r)

@@ -6,7 +6,7 @@ from core.machines.parameters import MachineParameters, Motor, Nameplate, WoundR
 from core.recordings import Recording
 from ied_sim.motor.contactor import Contactor
 from ied_sim.motor.fault import FaultCourse
-from ied_sim.motor.load import Load
+from ied_sim.motor.load import Load, Pulsation
 from ied_sim.motor.plant import MotorPlant, rated_current
 from ied_sim.motor.sensors import Sensors
 from ied_sim.motor.slip_rings import SlipRings, turns_ratio
@@ -22,6 +22,13 @@ HOIST = Motor(
     wound_rotor=ROTOR,
 )
 """37 kW with its rings shorted while it runs."""
+MILL = Motor(
+    "mill",
+    Nameplate(500_000.0, 6_000.0, 50.0, pole_pairs=3),
+    MachineParameters(0.65, 0.70, 0.0206, 0.0219, 0.535, 100.0),
+    wound_rotor=WoundRotor(open_circuit_voltage_V=1_100.0, rated_current_A=281.0, rated_speed_rpm=989.0),
+)
+"""500 kW at medium voltage."""
 HOIST_WITH_UNKNOWN_RESISTANCE = replace(
     HOIST, wound_rotor=replace(ROTOR, external_resistance_ohm=(0.0, 0.35))
 )
@@ -30,7 +37,7 @@ HOIST_WITH_UNKNOWN_RESISTANCE = replace(
 
 @dataclass(frozen=True, slots=True)
 class WoundRotorCase:
-    """The hoist in one operation.
+    """A motor with a wound rotor in one operation.
 
     external_ohm: at the rings while it runs.  contacts_ohm: what bad contacts add to each rotor phase.
     level, phase: shorted turns.  noise: white, of rated values.  start_steps, start_ends_s: of a start.
@@ -44,6 +51,8 @@ class WoundRotorCase:
     level: float = 0.0
     phase: int = 1
     unbalance: float = 0.005
+    unbalance_angle_rad: float = 0.0
+    pulsations: tuple[Pulsation, ...] = ()
     noise: float = 0.002
     seed: int = 0
     start_steps: tuple[tuple[float, float], ...] = ()
@@ -54,16 +63,22 @@ class WoundRotorCase:
     @property
     def plant(self) -> MotorPlant:
         """The simulated motor, which runs."""
-        motor, volts = self.motor, self.motor.nameplate.rated_voltage_V
+        motor, volts, rotor = self.motor, self.motor.nameplate.rated_voltage_V, self.motor.wound_rotor
+        assert rotor is not None
         return MotorPlant(
             motor,
-            Supply(volts, motor.nameplate.rated_frequency_Hz, unbalance=self.unbalance),
-            Load(self.load_level, inertia_kgm2=self.inertia_kgm2),
+            Supply(
+                volts,
+                motor.nameplate.rated_frequency_Hz,
+                unbalance=self.unbalance,
+                unbalance_angle_rad=self.unbalance_angle_rad,
+            ),
+            Load(self.load_level, pulsations=self.pulsations, inertia_kgm2=self.inertia_kgm2),
             Sensors(12.0 * rated_current(motor), 2.0 * volts, self.gain_errors, noise=self.noise),
             fault=FaultCourse(self.phase, ((0.0, self.level),), 0.0) if self.level else None,
             seed=self.seed,
             slip_rings=SlipRings(
-                turns_ratio(motor, ROTOR.open_circuit_voltage_V),
+                turns_ratio(motor, rotor.open_circuit_voltage_V),
                 self.contacts_ohm,
                 self.external_ohm,
                 self.start_steps,

@@ -15,6 +15,9 @@ ROUNDING = 1e-6
 TRANSFORMER_RATIOS = (1e-4, 1e5)
 """Also of clip-on sensors whose volts or millivolts the recording calls amperes, and of kV called V."""
 
+LARGEST = 1e300
+"""Beyond are numbers that a computer cannot hold."""
+
 NOTHING = "nothing"
 UNKNOWN = "an unknown key"
 
@@ -265,13 +268,9 @@ class MotorTable:
         """
         value = self._take(key, 0.0)
         given: list[object] = value if isinstance(value, list) else [value, value]
-        ends = [float(end) for end in given if isinstance(end, int | float) and not isinstance(end, bool)]
-        if (
-            len(given) != 2
-            or len(ends) != 2
-            or not 0.0 <= ends[0] <= ends[1] < inf
-            or ends[1] > most * (1.0 + ROUNDING)
-        ):
+        numbers = [end for end in given if isinstance(end, int | float) and not isinstance(end, bool)]
+        ends = [float(end) for end in numbers if 0.0 <= end < LARGEST]
+        if len(given) != 2 or len(ends) != 2 or ends[0] > ends[1] or ends[1] > most * (1.0 + ROUNDING):
             limit = "" if isnan(most) else f", 0 to {plain(most, 6)} {unit}"
             self._refuse(key, f"a number, or [least, largest]{limit}", value)
             return 0.0, 0.0

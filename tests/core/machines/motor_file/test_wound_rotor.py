@@ -60,6 +60,11 @@ def test_without_parameters_the_plate_tells_the_resistance_of_the_rotor() -> Non
         (ROTOR.replace("98", "980"), "[nameplate] rotor_current_A", "times rated_power_W"),
         (ROTOR + "rated_speed_rpm = 1500", "[nameplate] rated_speed_rpm", "rpm"),
         (ROTOR + "[rotor_circuit]\nexternal_resistance_ohm = [0.3, 0.1]", "[rotor_circuit] ", "[least, "),
+        (
+            ROTOR + "[rotor_circuit]\nexternal_resistance_ohm = [0, 1" + "0" * 399 + "]",
+            "[rotor_circuit]",
+            "ohm",
+        ),
         (ROTOR + "[rotor_circuit]\nexternal_resistance_ohm = 350", "[rotor_circuit] ", "ohm a phase"),
     ],
 )

@@ -1,0 +1,1 @@
+"""Motors with a wound rotor: stator, rotor winding, and what is at the slip rings."""
