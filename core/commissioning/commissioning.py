@@ -19,6 +19,7 @@ from core.commissioning.result import Commissioning, Estimate, StartFound
 from core.commissioning.search import search
 from core.commissioning.start import Start, thinned
 from core.commissioning.start_detection import start_of
+from core.commissioning.stepped_commissioning import commission_stepped
 from core.commissioning.uncertainty import inherited_covariance, noise_covariance, preference, quantile
 from core.commissioning.unknowns import OF_A_START, Point
 from core.machines.base import Array
@@ -81,11 +82,21 @@ def commission(
     report = progress or _no_progress
     prior = prior_of(plate.nameplate, plate.parameters, plate.wound_rotor)
     starts = [
-        start_of(one, plate.nameplate, plate.channels, transformers=plate.transformers, span_s=span_s)
+        start_of(
+            one,
+            plate.nameplate,
+            plate.channels,
+            transformers=plate.transformers,
+            span_s=span_s,
+            by_steps=plate.wound_rotor is not None,
+        )
         for one in recordings
     ]
     if not starts:
         raise ValueError("commissioning needs at least one recording of a start")
+    stepped = None if plate.wound_rotor is None else commission_stepped(starts, plate, begun)
+    if stepped is not None:
+        return stepped
     vector, evaluations = _found(starts, prior, load_law or LoadLaw.CONSTANT, report)
     report(0.7, "choosing the law of the load")
     law, vector, spent, law_identified = _with_law([thinned(one) for one in starts], prior, vector, load_law)

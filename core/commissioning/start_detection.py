@@ -36,6 +36,10 @@ HIGHEST_VOLTAGE = 1.3
 """Highest voltage accepted, over the rated one."""
 LOWEST_INRUSH = 1.5
 """Least inrush of a start: the greatest current over the rated one, both as space vectors."""
+LOWEST_BY_STEPS = 0.5
+"""The same of a wound rotor with resistance at its rings."""
+FIRST_STEP_CYCLES = 2.0
+"""Cycles after the switching that are the first step's for sure."""
 USUAL_INRUSH = (2.0, 12.0)
 """Range of the inrush of most motors, over the rated current."""
 HIGHEST_INRUSH = 25.0
@@ -93,6 +97,7 @@ def start_of(
     *,
     transformers: Transformers = AS_RECORDED,
     span_s: tuple[float, float | None] = (0.0, None),
+    by_steps: bool = False,
 ) -> Start:
     """Find the start in a recording and check that it is one.
 
@@ -108,6 +113,8 @@ def start_of(
         Ratios of the instrument transformers, where the recording does not tell them right.
     span_s : (float, float or None), optional
         Part of the record whose currents are compared, after the switching instant [s].
+    by_steps : bool, default False
+        Whether a wound rotor may start by steps of resistance, with a current near the rated one.
 
     Returns
     -------
@@ -139,8 +146,13 @@ def start_of(
         )
     _check_samples(measured, nameplate, source)
     per_cycle = rate / nameplate.rated_frequency_Hz
-    onset = _onset(clarke(measured.current_abc), nameplate, measured.current_channels, per_cycle, source)
-    _check_direct(course_of(measured.current_abc, per_cycle), nameplate, source)
+    current_ab, least = clarke(measured.current_abc), LOWEST_BY_STEPS if by_steps else LOWEST_INRUSH
+    onset = _onset(current_ab, nameplate, measured.current_channels, per_cycle, source, least)
+    if by_steps:
+        # Later steps draw more: the rise is that of the first one's current.
+        first_step = current_ab[:, : ceil(onset + FIRST_STEP_CYCLES * per_cycle)]
+        onset = current_onset(first_step, per_cycle) or onset
+    _check_direct(course_of(measured.current_abc, per_cycle), nameplate, source, by_steps=by_steps)
     live = voltage_onset(measured.voltage_ab)
     hint = (onset - live) / rate if live > 0 and onset < live + per_cycle * 1.5 else None
     check_wiring(measured, nameplate, source, onset=onset, live=live, hint_s=hint)
@@ -179,7 +191,7 @@ def _check_samples(measured: Terminals, nameplate: Nameplate, source: str) -> No
             )
 
 
-def _check_direct(course: Course | None, nameplate: Nameplate, source: str) -> None:
+def _check_direct(course: Course | None, nameplate: Nameplate, source: str, *, by_steps: bool) -> None:
     """Check that the motor is switched on once, at full voltage, and stays on: only that can be played."""
     if course is None:
         return
@@ -191,7 +203,7 @@ def _check_direct(course: Course | None, nameplate: Nameplate, source: str) -> N
             f"a current that is interrupted {at_s:.2f} s after the recording's beginning, as from star to "
             "delta: such a start is not supported"
         )
-    elif not course.is_direct:
+    elif not (course.is_direct or by_steps):
         found = (
             "a current that rises slowly, as through a soft starter, a drive or a reduced voltage: such a "
             "start is not supported"
@@ -202,7 +214,12 @@ def _check_direct(course: Course | None, nameplate: Nameplate, source: str) -> N
 
 
 def _onset(
-    current_ab: Array, nameplate: Nameplate, channels: tuple[Channel, ...], per_cycle: float, source: str
+    current_ab: Array,
+    nameplate: Nameplate,
+    channels: tuple[Channel, ...],
+    per_cycle: float,
+    source: str,
+    least: float,
 ) -> float:
     length = np.hypot(current_ab[0], current_ab[1])
     inrush = float(length.max()) / (sqrt(3.0) * rated_current_A(nameplate))
@@ -225,11 +242,11 @@ def _onset(
     rated = rated_current_A(nameplate)
     usual = (USUAL_INRUSH[0] * rated, USUAL_INRUSH[1] * rated)
     advice = current_advice(inrush * rated, usual, rated, channels)
-    if inrush < LOWEST_INRUSH:
+    if inrush < least:
         raise CommissioningError(
             source,
             "start",
-            expected=f"an inrush of at least {LOWEST_INRUSH:g} times the rated current",
+            expected=f"an inrush of at least {least:g} times the rated current",
             found=f"{inrush:.2f} times: no start, a start through a drive, or currents scaled wrongly: check "
             f"the current transformers' ratio and rated_power_W; {advice}",
         )

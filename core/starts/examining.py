@@ -1,13 +1,17 @@
 """Examines a recorded start: its figures, and what the motor's model tells of it."""
 
 from dataclasses import replace
+from math import pi
 
 from core.commissioning.errors import CommissioningError
 from core.commissioning.start_detection import start_of
+from core.commissioning.stepped_start import SteppedStart, stepped_start
+from core.machines.air_gap import AirGap
 from core.machines.parameters import Motor, ParametersSource
 from core.recordings import Recording, RecordingError
 from core.rotor.starts import start_sideband
 from core.starts.examined import ExaminedStart, StartParameters
+from core.starts.figures import MotorStart
 from core.starts.measuring import measure_start
 from core.starts.parameters import start_parameters
 from core.starts.stress import start_stress
@@ -39,7 +43,17 @@ def examine_start(recording: Recording, motor: Motor) -> ExaminedStart:
     """
     figures = measure_start(recording, motor)
     try:
-        start = start_of(recording, motor.nameplate, motor.channels, transformers=motor.transformers)
+        start = start_of(
+            recording,
+            motor.nameplate,
+            motor.channels,
+            transformers=motor.transformers,
+            by_steps=motor.wound_rotor is not None,
+        )
+        gap = start.air_gap(motor.parameters)
+        stepped = None if motor.wound_rotor is None else stepped_start(gap, motor)
+        if stepped is not None:
+            return _by_steps(figures, gap, motor, stepped)
         found = start_parameters(recording, motor)
     except (RecordingError, CommissioningError) as error:
         reason = f"{error.field}: expected {error.expected}, found {error.found}"
@@ -58,6 +72,21 @@ def examine_start(recording: Recording, motor: Motor) -> ExaminedStart:
         if fits
         else f"the model leaves {found.residual_share:.0%} of the current unexplained: the motor file's "
         "parameters were used",
+    )
+
+
+def _by_steps(figures: MotorStart, gap: AirGap, motor: Motor, found: SteppedStart) -> ExaminedStart:
+    """Return a start by steps of a wound rotor's resistance: its speed is that of the equation of motion."""
+    known = replace(motor, parameters=replace(motor.parameters, inertia_kgm2=found.inertia_kgm2))
+    speed = found.speed / (2.0 * pi * gap.frequency_hz)
+    torque = start_torque(replace(gap, slip=1.0 - speed), known, figures.acceleration_s)
+    steps = f"{len(found.begins_s) - 1} steps of the resistance at the slip rings"
+    return ExaminedStart(
+        figures,
+        torque,
+        stress=start_stress(figures, motor),
+        remark=f"a start by {steps}: it tells inertia and load ({found.inertia_kgm2:.3g} kg m^2, "
+        f"{found.load_torque_Nm:.3g} N m), no impedances, and nothing of an uneven rotor",
     )
 
 
