@@ -6,7 +6,7 @@ from concurrent.futures import Executor, ProcessPoolExecutor
 from pathlib import Path
 
 from benchmarks.reporting import Section, write_sections
-from benchmarks.rotor import detection, false_alarms, leakage, sideband_figure, speed
+from benchmarks.rotor import detection, false_alarms, leakage, one_phase, sideband_figure, speed
 
 PAGE = Path("docs/evidence/rotor.md")
 PREAMBLE = """# Broken rotor bars
@@ -27,6 +27,7 @@ SUBJECTS = {
     "detection": detection.sections,
     "false-alarms": false_alarms.sections,
     "leakage": leakage.sections,
+    "one-phase": one_phase.sections,
     "sidebands": sideband_figure.sections,
     "speed": speed.sections,
 }

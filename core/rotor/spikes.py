@@ -6,6 +6,10 @@ from core.machines.base import Array
 
 SPIKE = 6.0
 """Robust standard deviations from which on a sample is a spike."""
+STEPS = 0.5
+"""Least noise of a sample, in steps of its converter: cycles whose samples are equal tell none."""
+LOOKED_AT = 2_000
+"""Samples that tell the converter's step."""
 NORMAL_OVER_MEDIAN = 1.4826
 """Standard deviation of normal noise over the median of its magnitude."""
 
@@ -14,12 +18,13 @@ def without_spikes(x: Array, per_cycle: float) -> tuple[Array, int]:
     """Replace samples that differ from those of the cycles before and after them.
 
     A sample is compared with the median of itself and its neighbours of one cycle earlier and later, which a
-    spike in one of them does not move. What cycles differ by tells the noise.
+    spike in one of them does not move; in the first and the last cycle, with the two nearest there are. What
+    cycles differ by tells the noise, at least half a step of the converter.
 
     Parameters
     ----------
     x : ndarray, shape (m, n)
-        Samples, finite, more than two cycles of them.
+        Samples, finite, three cycles of them and more.
     per_cycle : float
         Samples in a cycle of the supply.
 
@@ -31,12 +36,17 @@ def without_spikes(x: Array, per_cycle: float) -> tuple[Array, int]:
         Number of samples replaced.
     """
     cycle = round(per_cycle)
-    before, now, after = x[:, : -2 * cycle], x[:, cycle:-cycle], x[:, 2 * cycle :]
-    middle = np.maximum(np.minimum(before, now), np.minimum(np.maximum(before, now), after))
-    noise = NORMAL_OVER_MEDIAN / np.sqrt(2.0) * np.median(np.abs(now - before), axis=1, keepdims=True)
-    is_spike = np.abs(now - middle) > SPIKE * noise
+    before = np.concatenate([x[:, 2 * cycle : 3 * cycle], x[:, :-cycle]], axis=1)
+    after = np.concatenate([x[:, cycle:], x[:, -3 * cycle : -2 * cycle]], axis=1)
+    middle = np.maximum(np.minimum(before, x), np.minimum(np.maximum(before, x), after))
+    noise = NORMAL_OVER_MEDIAN / np.sqrt(2.0) * np.median(np.abs(x - before), axis=1, keepdims=True)
+    is_spike = np.abs(x - middle) > SPIKE * np.maximum(noise, STEPS * _steps(x))
     if not is_spike.any():
         return x, 0
-    cleaned = x.copy()
-    cleaned[:, cycle:-cycle][is_spike] = middle[is_spike]
-    return cleaned, int(is_spike.sum())
+    return np.where(is_spike, middle, x), int(is_spike.sum())
+
+
+def _steps(x: Array) -> Array:
+    """Return the usual distance between neighbouring values, shape (m, 1): the step of a coarse converter."""
+    values = [np.unique(row[:LOOKED_AT]) for row in x]
+    return np.array([[np.median(np.diff(one)) if one.size > 1 else 0.0] for one in values])

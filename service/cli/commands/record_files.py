@@ -78,6 +78,60 @@ def diagnose(
 
 
 @commands.command()
+def rotor(
+    record: Annotated[
+        Path,
+        typer.Argument(
+            metavar="RECORD",
+            help="The current: columns of numbers (.csv, .tsv, .txt), COMTRADE, or an SEL event report.",
+        ),
+    ],
+    speed_rpm: Annotated[
+        float, typer.Option("--speed-rpm", metavar="RPM", min=1.0, help="Speed of the motor.")
+    ],
+    healthy: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="RECORD",
+            help="A record of the same motor at this speed, known to be healthy, to compare with.",
+        ),
+    ] = None,
+    column: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="The current among several columns: its name, or 1, 2, 3 ..."),
+    ] = None,
+    rate: Annotated[
+        float | None,
+        typer.Option(
+            metavar="HZ", min=1.0, help="Sampling rate (default: by the file's first column of times)."
+        ),
+    ] = None,
+    frequency: Annotated[float, typer.Option(metavar="HZ", min=1.0, help="Rated frequency.")] = 50.0,
+    pole_pairs: Annotated[
+        int | None,
+        typer.Option(metavar="NUMBER", min=1, help="Pole pairs (default: as many as the speed allows)."),
+    ] = None,
+    *,
+    as_json: Json = False,
+) -> None:
+    """Look for broken rotor bars in the current of one phase, where nothing else was recorded.
+
+    With all three currents and the voltages, and a motor file, mcc diagnose tells far more.
+    """
+    from service.cli.recordings.rotor import Source, examine_current
+
+    examine_current(
+        record,
+        speed_rpm,
+        Source(column, rate),
+        frequency_hz=frequency,
+        pole_pairs=pole_pairs,
+        healthy=healthy,
+        as_json=as_json,
+    )
+
+
+@commands.command()
 def follow(
     records: Annotated[
         list[str],

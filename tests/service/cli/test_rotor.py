@@ -1,0 +1,91 @@
+"""`mcc rotor`: one phase's current from a file, with the speed."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from core.recordings import comtrade
+from service.cli.app import main
+from testing.machines.motors import REFERENCE
+from testing.machines.rotor_records import RotorCase, one_phase
+
+RATE_HZ = 5_000.0
+STEP_A = 0.04
+LOAD = RotorCase(REFERENCE, load_level=0.9)
+SPEED = ("--speed-rpm", f"{1_500.0 * (1.0 - LOAD.slip()):.0f}")
+
+
+def written(path: Path, broken_share: float) -> Path:
+    """A second of phase a in steps of 40 mA with a spike, as one column."""
+    case = replace(LOAD, broken_share=broken_share)
+    current = STEP_A * np.round(one_phase(case.record(1.0, RATE_HZ, seed=3)) / STEP_A)
+    current[1_700] += 2.0
+    np.savetxt(path, current, fmt="%.2f")
+    return path
+
+
+def told(capsys: pytest.CaptureFixture[str], *words: str) -> Any:
+    assert main(["rotor", *words, "--json"]) == 0
+    return json.loads(capsys.readouterr().out)
+
+
+def test_a_broken_bar_stands_out_from_a_healthy_record(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    healthy, broken = written(tmp_path / "healthy.csv", 0.0), written(tmp_path / "broken.csv", 1.0 / 28.0)
+    found = told(capsys, str(broken), *SPEED, "--rate", "5000", "--healthy", str(healthy))
+    assert found["state"] == "watch"
+    assert found["change_dB_ci95"][0] > 10.0
+    assert found["spikes"] == 1
+    assert found["pole_pairs"] == 2
+    assert any("never more than watch" in reason for reason in found["reasons"])
+    beside = told(capsys, str(healthy), *SPEED, "--rate", "5000", "--healthy", str(healthy))
+    assert (beside["state"], beside["change_dB"]) == ("healthy", 0.0)
+
+
+def test_a_table_for_people_says_where_the_sidebands_are(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    broken = written(tmp_path / "broken.csv", 1.0 / 28.0)
+    assert main(["rotor", str(broken), *SPEED, "--rate", "5000"]) == 0
+    shown = capsys.readouterr().out
+    assert "lower sideband" in shown
+    assert "as broken bars make it" in shown
+
+
+def test_a_channel_of_a_comtrade_record_is_chosen_by_name(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    record = replace(LOAD, broken_share=1.0 / 28.0).record(1.0, RATE_HZ)
+    path = comtrade.write(tmp_path / "motor.CFG", record, revision=2013, data_format="FLOAT32")
+    assert told(capsys, str(path), *SPEED, "--column", record.channels[1].name)["state"] == "watch"
+    assert main(["rotor", str(path), *SPEED]) == 2
+    assert "--column" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "said"),
+    [
+        (SPEED, 1, "--rate"),
+        (("--speed-rpm", "1500", "--rate", "5000"), 2, "synchronous"),
+        ((*SPEED, "--rate", "5000", "--column", "IA"), 2, "found IA"),
+    ],
+)
+def test_what_cannot_be_used_says_what_would_do(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], words: tuple[str, ...], code: int, said: str
+) -> None:
+    assert main(["rotor", str(written(tmp_path / "a.csv", 0.0)), *words]) == code
+    assert said in capsys.readouterr().err
+
+
+def test_a_speed_too_near_the_synchronous_one_is_unsupported(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = written(tmp_path / "light.csv", 0.0)
+    found = told(capsys, str(path), "--speed-rpm", "1490", "--rate", "5000")
+    assert (found["state"], found["lower_sideband_dB"]) == ("unsupported", None)
+    assert "it takes" in found["reasons"][0]
