@@ -1,4 +1,4 @@
-"""Broken rotor bars on simulated motors: python -m benchmarks.rotor [--quick] [--subject SUBJECT]."""
+"""Broken rotor bars: python -m benchmarks.rotor [--quick] [--subject SUBJECT] [--data FOLDER]."""
 
 import argparse
 import os
@@ -6,7 +6,7 @@ from concurrent.futures import Executor, ProcessPoolExecutor
 from pathlib import Path
 
 from benchmarks.reporting import Section, write_sections
-from benchmarks.rotor import detection, false_alarms, leakage, one_phase, sideband_figure, speed
+from benchmarks.rotor import detection, false_alarms, leakage, measured, one_phase, sideband_figure, speed
 
 PAGE = Path("docs/evidence/rotor.md")
 PREAMBLE = """# Broken rotor bars
@@ -21,7 +21,7 @@ resistance. Fault means that its 95 % interval lies above -36 dB, watch that the
 
 Unsupported counts what the quality gate refuses, too.
 
-No motor with a broken bar was at hand: these figures rest on simulation.
+No motor with a broken bar was at hand: what is said of them rests on simulation.
 """
 SUBJECTS = {
     "detection": detection.sections,
@@ -32,22 +32,27 @@ SUBJECTS = {
     "speed": speed.sections,
 }
 
+MEASURED = "measured"
+
 
 def main() -> None:
     """Measure the subjects, and put them into the page unless they are quick ones."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true", help="few cases, printed and not written")
     parser.add_argument("--subject", choices=SUBJECTS, action="append", help="only this one")
+    parser.add_argument("--data", type=Path, help="folder of measured recordings: these alone")
     parser.add_argument("--workers", type=int, default=os.cpu_count() or 1)
     options = parser.parse_args()
     sections: list[Section] = []
     with ProcessPoolExecutor(options.workers) as pool:
-        for name in options.subject or SUBJECTS:
+        if options.data is not None:
+            sections += measured.sections(options.data, pool)
+        for name in options.subject or (SUBJECTS if options.data is None else ()):
             sections += _of(name, pool, quick=options.quick)
     if options.quick:
         print("\n".join(section.text() for section in sections))
     else:
-        write_sections(PAGE, PREAMBLE, list(SUBJECTS), sections)
+        write_sections(PAGE, PREAMBLE, [*SUBJECTS, MEASURED], sections)
 
 
 def _of(name: str, pool: Executor, *, quick: bool) -> list[Section]:

@@ -39,7 +39,7 @@ def examine_rotor(accepted: Accepted, diagnosis: Diagnosis) -> RotorFinding:
     accepted : Accepted
         A record that passed the quality gate.
     diagnosis : Diagnosis
-        Its diagnosis, which knows the sensors' delay.
+        Its diagnosis, which knows the sensors' delay, and the load beside shorted turns.
 
     Returns
     -------
@@ -54,6 +54,8 @@ def examine_rotor(accepted: Accepted, diagnosis: Diagnosis) -> RotorFinding:
         return _unsupported(duration_s, "the currents are not those of this motor at these voltages")
     point = running_point(baseband, motor)
     slip, load_level = point.slip(motor), point.torque_Nm / motor.nameplate.rated_torque_Nm
+    if diagnosis.phase is not None and diagnosis.load_level is not None:
+        load_level = diagnosis.load_level  # of the power that crosses the air gap, shorted turns take a part
     ratios = resistance_ratios(motor)
     told_slip = None if ratios.are_open else slip
     unsupported = partial(_unsupported, duration_s, slip=told_slip, load_level=load_level)

@@ -15,6 +15,7 @@ from core.rotor.examining import examine_rotor
 from core.rotor.finding import RotorFinding, RotorState, load_bin
 from ied_sim.motor.supply import Supply
 from testing.machines.motors import LARGE, MEDIUM, REFERENCE
+from testing.machines.phase_circuits import Fault, recording, running
 from testing.machines.rotor_records import FREQUENCY_HZ, RotorCase
 
 ONE_BAR = 1.0 / 28.0
@@ -178,6 +179,11 @@ def test_a_motor_that_the_diagnosis_does_not_recognise_is_examined_where_its_cur
     found = examine_rotor(replace(acceptance.accepted, case=case), nameless)
     assert found.state is RotorState.UNSUPPORTED
     assert "not those of this motor" in found.reasons[0]
+
+
+def test_the_load_is_without_what_shorted_turns_take() -> None:
+    record = recording(running(MEDIUM, 0.6, fault=Fault(0.08, 1)), noise=0.001)
+    assert _found(record, MEDIUM).load_level == pytest.approx(0.6, abs=0.02)
 
 
 def test_load_bins_are_tenths_of_the_rated_load() -> None:
