@@ -11,6 +11,7 @@ from statistics import median
 from typing import NamedTuple
 
 from core.rotor.finding import LOAD_BINS, RotorFinding, RotorState
+from core.rotor.judgement import LOAD_OSCILLATION
 
 BASELINE_RECORDS = 3
 """First records of a load bin, whose median is its baseline."""
@@ -151,6 +152,7 @@ class _Seen:
     interval: tuple[float, float]
     bin: int
     change_dB: float | None
+    load_swings: bool
 
     @property
     def has_risen(self) -> bool:
@@ -171,7 +173,8 @@ def _with_changes(findings: Sequence[DatedFinding]) -> Iterator[_Seen]:
         change = level - median(baseline) if len(baseline) == BASELINE_RECORDS else None
         if len(baseline) < BASELINE_RECORDS:
             baseline.append(level)
-        yield _Seen(dated.time_ns, found.state, found.severity_dB, interval, load_bin, change)
+        swings = any(reason.startswith(LOAD_OSCILLATION) for reason in found.reasons)
+        yield _Seen(dated.time_ns, found.state, found.severity_dB, interval, load_bin, change, swings)
 
 
 def _latest(seen: list[_Seen], end: int) -> list[_Seen]:
@@ -210,4 +213,11 @@ def _reasons(state: RotorState, latest: list[_Seen]) -> tuple[str, ...]:
         reasons.append(
             f"{len(risen)} of the latest {count} records are {min(risen):.1f} dB and more above the baseline"
         )
-    return tuple(reasons) or ("the latest records show an even rotor, as the first ones did",)
+    reasons = reasons or ["the latest records show an even rotor, as the first ones did"]
+    swinging = sum(one.load_swings for one in latest)
+    if swinging:
+        reasons.append(
+            f"{LOAD_OSCILLATION} in {swinging} of the latest {count} records: the load swings at twice the "
+            "slip, and its sidebands are taken off"
+        )
+    return tuple(reasons)

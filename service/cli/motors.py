@@ -12,6 +12,7 @@ from core.machines.typical import COMMISSION
 from service.cli.output import facts_table, failing_clearly, print_document, results
 from service.client.conditions import as_of, condition_lines, condition_of, since_day, state_text
 from service.client.rest_client import Document, ServiceClient, ServiceError, segment
+from service.client.rotor_conditions import rotor_lines, rotor_of
 from service.client.tables import FittedTable
 from service.client.verdicts import (
     detection,
@@ -46,14 +47,15 @@ def list_motors(url: str, *, as_json: bool) -> None:
 
 
 def show_health(url: str, motor: str, *, as_json: bool) -> None:
-    """Print a motor's condition: what to do, why, then the latest recording. Raises CommandError."""
+    """Print a motor's condition: what to do and why, its rotor, its latest recording. Raises CommandError."""
     with failing_clearly(ServiceError), ServiceClient(url) as service:
         health = service.get(f"/motors/{segment(motor)}/health")
         lines = condition_lines(condition_of(health))
+        rotor = rotor_of(service, motor)
     if as_json:
-        print_document(health)
+        print_document({**health, "rotor": rotor})
         return
-    results().print(facts_table(lines, _latest_recording(health), title=motor))
+    results().print(facts_table(lines, rotor_lines(rotor), _latest_recording(health), title=motor))
 
 
 def motors_table(healths: Sequence[Document]) -> FittedTable:

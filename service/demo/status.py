@@ -5,9 +5,11 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
+from core.rotor.finding import RotorState
 from scl import DEMO_PLANT_SCD
 from service.client.conditions import condition_of
 from service.client.rest_client import Document, ServiceClient, segment
+from service.client.rotor_conditions import rotor_of
 from service.demo import MONTH, MOTORS, SCENARIO
 from service.demo.month import began, latest_s
 from service.demo.open_alarms import open_alarms_of
@@ -33,11 +35,13 @@ class MotorStatus:
     """One motor: its health as the service reports it (GET motors/{name}/health), and the truth.
 
     truth: at the time of the latest record.  alarms: those of the motor that are not over.
+    rotor: what its records say of the cage (GET motors/{name}/rotor).
     """
 
     health: Document
     truth: Truth
     alarms: Sequence[Document] = ()
+    rotor: Document | None = None
 
     @property
     def condition(self) -> Document:
@@ -62,6 +66,19 @@ class MotorStatus:
             return None if said[0] is None else said == truth
         return None if state == "unknown" or self.truth.verdict == "fault" else True
 
+    @property
+    def is_rotor_right(self) -> bool | None:
+        """Whether what is said of the rotor is true; None while nothing is said, or a bar is cracked only.
+
+        A bar that is broken and not yet called a fault is neither right nor wrong: that takes two records.
+        """
+        state = None if self.rotor is None else self.rotor["state"]
+        if state == RotorState.FAULT:
+            return self.truth.broken_bars > 0.0
+        if state == RotorState.HEALTHY:
+            return True if self.truth.broken_bars == 0.0 else None
+        return None
+
     def as_dict(self) -> dict[str, object]:
         return {
             "motor": self.health["motor"],
@@ -70,6 +87,8 @@ class MotorStatus:
             **{name: self.health[name] for name in VERDICT + LINK},
             "truth": self.truth.as_dict(),
             "right": self.is_right,
+            "rotor": self.rotor,
+            "rotor_right": self.is_rotor_right,
             "alarms": [{name: alarm[name] for name in ALARM} for alarm in self.alarms],
         }
 
@@ -118,7 +137,12 @@ def ask_status(
     healths = [_health(service, str(motor["name"])) for motor in service.items("/motors")]
     alarms = open_alarms_of(service)
     return [
-        MotorStatus(health, _truth_of(str(health["ied"]), truths), alarms.get(str(health["motor"]), ()))
+        MotorStatus(
+            health,
+            _truth_of(str(health["ied"]), truths),
+            alarms.get(str(health["motor"]), ()),
+            rotor_of(service, str(health["motor"])),
+        )
         for health, truths in zip(healths, truths_at(healths), strict=True)
     ]
 

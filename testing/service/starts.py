@@ -37,7 +37,7 @@ class RecordedStarts:
         """Add the recording of a start with what it shows; return its id."""
         self._number += 1
         now_ns = NOW_NS + self._number * SECOND_NS if at_ns is None else at_ns
-        stored = self._store.store({f"S{self._number}.CFF": f"{motor} {self._number}".encode()})
+        stored = self._store.store({f"S{self._number}.CFF": f"start of {motor} {self._number}".encode()})
         added = self.repository.add_recording(stored, motor=motor, now_ns=now_ns)
         self.diagnose(start, now_ns)
         return added.recording.id

@@ -12,6 +12,7 @@ from service.api.document import Name
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
 from service.api.rotor_and_supply.schemas import RotorCondition, RotorTrendPoint, SupplyTrendPoint
+from service.api.rotor_and_supply.start_agreement import StartAgreement, start_agreement
 from service.api.times import TimeParameter
 from service.storage.records import RotorEntry, SupplyEntry
 
@@ -30,6 +31,7 @@ def get_rotor(context: Context, name: Name) -> RotorCondition:
             **condition.as_dict(),
             "motor": name,
             "since": condition.since_ns,
+            "start": _of_start(start_agreement(context.repository, name)),
             "advice": rotor_advice(condition.state),
         }
     )
@@ -63,6 +65,19 @@ def list_supply_trend(
     after = decode(cursor, int, str)
     found = context.repository.supply_trend(name, from_ns=from_, to_ns=to, limit=limit, after=after)
     return page(found, _supply_point)
+
+
+def _of_start(found: StartAgreement | None) -> dict[str, object] | None:
+    if found is None:
+        return None
+    return {
+        "recording_id": found.start.recording_id,
+        "time": found.start.time_ns,
+        "state": found.sideband.state,
+        "severity_dB": found.sideband.severity_dB,
+        "agrees": found.agrees,
+        "words": found.words,
+    }
 
 
 def _rotor_point(entry: RotorEntry) -> RotorTrendPoint:

@@ -49,11 +49,25 @@ class RotorLoadBin(Document):
     baseline_dB: float | None
 
 
+class RotorOfStart(Document):
+    """What the latest start that can tell shows of the cage, beside the latest running record that can.
+
+    agrees: whether both say the same; null where one cannot see what the other shows. words: the comparison.
+    """
+
+    recording_id: str
+    time: Time
+    state: RotorState
+    severity_dB: float | None
+    agrees: bool | None
+    words: str
+
+
 class RotorCondition(Document):
     """The rotor of a motor, from all its recordings that could tell.
 
     severity_dB: median of the latest ones. change_dB: against the baseline of the same load. since: first
-    recording that shows this state. advice: what is to be done.
+    recording that shows this state. start: null without a start that can tell. advice: what is to be done.
     """
 
     motor: str
@@ -63,6 +77,7 @@ class RotorCondition(Document):
     change_dB: float | None
     since: Time | None
     bins: Listed[RotorLoadBin]
+    start: RotorOfStart | None
     advice: str
     reasons: Listed[str]
 

@@ -11,7 +11,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.text import Text
 
 from scl import SclError
-from service.cli.demo.month import conditions_of, conditions_table, play_month
+from service.cli.demo.month import conditions_of, conditions_table, play_month, rotors_of
 from service.cli.output import CommandError, as_json, failing_clearly, failure_document, progress, results
 from service.client.rest_client import Document, ServiceClient, ServiceError
 from service.demo.interruption import Interruption, interruptible
@@ -135,7 +135,7 @@ def _play_month(
     while True:
         conditions = conditions_of(service)
         alarms = open_alarms_of(service)
-        results().print(conditions_table(played, conditions, alarms))
+        results().print(conditions_table(played, conditions, rotors_of(service, played), alarms))
         if alarms:
             results().print(NEXT_STEP)
         _show_page(plant)

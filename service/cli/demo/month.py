@@ -12,6 +12,7 @@ from mms import MmsError
 from service.cli.output import progress, results
 from service.client.conditions import condition_of, state_text
 from service.client.rest_client import Document, ServiceClient
+from service.client.rotor_conditions import rotor_of, rotor_text
 from service.client.tables import FittedTable
 from service.client.verdicts import level
 from service.demo.month import Month
@@ -109,14 +110,22 @@ def conditions_of(service: ServiceClient) -> dict[str, Document]:
     }
 
 
+def rotors_of(service: ServiceClient, motors: Sequence[DemoMotor]) -> dict[str, Document]:
+    """Return the condition of each motor's rotor by the motor's name. Raises ServiceError."""
+    return {motor.name: rotor_of(service, motor.name) for motor in motors}
+
+
 def conditions_table(
-    motors: Sequence[DemoMotor], conditions: Mapping[str, Document], alarms: OpenAlarms
+    motors: Sequence[DemoMotor],
+    conditions: Mapping[str, Document],
+    rotors: Mapping[str, Document],
+    alarms: OpenAlarms,
 ) -> FittedTable:
-    """Return a table of every motor's condition beside its truth, with its open alarms."""
+    """Return a table of every motor's condition and rotor beside its truth, with its open alarms."""
     shown = FittedTable(
         title="Conditions and truth", title_justify="left", box=SIMPLE_HEAD, collapse_padding=True
     )
-    for heading in ("motor", "truth", "condition", "level", "since", "alarm"):
+    for heading in ("motor", "truth", "condition", "level", "since", "rotor", "alarm"):
         shown.add_column(heading, no_wrap=heading == "motor")
     for motor in motors:
         condition = conditions[motor.name]
@@ -127,6 +136,7 @@ def conditions_table(
             state_text(condition),
             Text(level(condition["mu_f"], condition["mu_f_ci95"])),
             Text("-" if since is None else str(since)[:16].replace("T", " ")),
+            rotor_text(rotors[motor.name]),
             Text(alarm_text(alarms.get(motor.name, ()))),
         )
     return shown

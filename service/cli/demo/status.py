@@ -7,6 +7,7 @@ from core.error_words import one_line
 from service.cli.output import failing_clearly, print_document, results
 from service.client.conditions import state_text
 from service.client.rest_client import ServiceClient, ServiceError
+from service.client.rotor_conditions import rotor_text
 from service.client.tables import FittedTable
 from service.client.verdicts import level, verdict_text
 from service.demo.open_alarms import alarm_text
@@ -25,7 +26,7 @@ def show_demo(url: str, *, as_json: bool) -> None:
         print_document({"motors": [motor.as_dict() for motor in motors], "right": right, "judged": judged})
         return
     table = FittedTable(box=SIMPLE_HEAD, collapse_padding=True)
-    for heading in ("motor", "truth", "condition", "level", "latest verdict", "link", "alarm"):
+    for heading in ("motor", "truth", "condition", "level", "latest verdict", "rotor", "link", "alarm"):
         table.add_column(heading, no_wrap=heading == "motor")
     for motor in motors:
         table.add_row(*_row(motor))
@@ -46,6 +47,7 @@ def _row(motor: MotorStatus) -> tuple[Text, ...]:
         state_text(motor.condition),
         Text(level(motor.condition["mu_f"], motor.condition["mu_f_ci95"])),
         Text("-") if verdict is None else verdict_text(str(verdict), health["phase"]),
+        Text("-") if motor.rotor is None else rotor_text(motor.rotor),
         Text(f"{health['link_state']}{reason}"),
         Text(alarm_text(motor.alarms)),
     )

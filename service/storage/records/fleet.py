@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from core.rotor.finding import RotorState
 from service.storage.records.conditions import ConditionEntry
 from service.storage.records.diagnoses import LatestFigures
 from service.storage.records.plant import MotorEntry
@@ -24,7 +25,7 @@ class FleetMotor:
     """What an overview tells of a motor.
 
     link, link_changed_ns: of its relay. figures: of its latest recording that has any, or None.
-    alarms: None where none calls.
+    alarms: None where none calls. rotor: what its standing alarm says; None where none stands.
     """
 
     motor: MotorEntry
@@ -33,3 +34,4 @@ class FleetMotor:
     link_changed_ns: int | None
     figures: LatestFigures | None
     alarms: CallingAlarms | None
+    rotor: RotorState | None = None

@@ -5,13 +5,15 @@ from dataclasses import dataclass
 from typing import Final
 
 from core.rotor.finding import RotorState
+from core.rotor.judgement import FAULT_DB, WATCH_DB
 from core.rotor.trend import RotorCondition
 from core.units import NANOSECONDS_PER_SECOND
 from service.alarms.rotor_rules import rotor_advice
+from service.api.rotor_and_supply.start_agreement import StartAgreement, start_agreement
 from service.client.rotor_and_supply import STATES, decibels, sideband_words
 from service.storage import Repository
 from service.storage.records import RotorEntry
-from service.web.charts import Chart, Kind, Series, Tone
+from service.web.charts import Chart, Kind, Limit, Series, Tone
 from service.web.charts.chart import AxisKind
 
 MOST_RECORDS: Final = 400
@@ -24,7 +26,10 @@ TONES: Final = (Tone.A, Tone.B, Tone.C, Tone.MODEL, Tone.ACCENT)
 
 @dataclass(frozen=True, slots=True)
 class RotorSection:
-    """What the page says of the rotor. latest: None where no record tells of it; no charts then."""
+    """What the page says of the rotor. latest: None where no record tells of it; no charts then.
+
+    start: None where no start tells of it, or no running record.
+    """
 
     latest: RotorEntry | None
     condition: RotorCondition
@@ -32,6 +37,7 @@ class RotorSection:
     sentence: str
     advice: str
     sidebands: str | None
+    start: StartAgreement | None
     severity_chart: Chart | None
     sideband_chart: Chart | None
     records: int
@@ -51,6 +57,7 @@ def rotor_section(repository: Repository, motor: str) -> RotorSection:
         sentence=_sentence(condition) if entries else "No record tells of the rotor yet.",
         advice=rotor_advice(condition.state),
         sidebands=None if latest is None else sideband_words(latest.finding),
+        start=start_agreement(repository, motor),
         severity_chart=_severity_chart(motor, telling) if telling else None,
         sideband_chart=_sideband_chart(motor, telling) if telling else None,
         records=len(entries),
@@ -123,7 +130,10 @@ def _severity_chart(motor: str, entries: Sequence[RotorEntry]) -> Chart:
         x_kind=AxisKind.TIME,
         x=_times(entries),
         series=series,
-        summary=f"{len(entries)} record{'s' if len(entries) > 1 else ''}, by tenths of the rated load.",
+        limits=[Limit(WATCH_DB, "watch", Tone.WATCH), Limit(FAULT_DB, "fault", Tone.FAULT)],
+        summary=f"{len(entries)} record{'s' if len(entries) > 1 else ''}, by tenths of the rated load. "
+        f"Above {WATCH_DB:g} dB a record is on watch. It shows a fault where its whole interval lies above "
+        f"{FAULT_DB:g} dB.",
         sync="rotor",
     )
 

@@ -1,5 +1,7 @@
 """The rotor over many records."""
 
+from dataclasses import replace
+
 from core.rotor.finding import RotorFinding, RotorState
 from core.rotor.trend import DatedFinding, LoadBin, RotorCondition, rotor_condition
 
@@ -52,6 +54,13 @@ def test_a_single_fault_is_watched_and_a_second_one_believed() -> None:
     assert two.severity_dB == -30.0
     assert two.severity_dB_ci95 == (-31.0, -29.0)
     assert two.since_ns == 5
+
+
+def test_a_load_that_swings_is_told_beside_a_sound_rotor() -> None:
+    swinging = replace(_finding(HEALTHY, -60.0), reasons=("load oscillation: the load's torque swings",))
+    condition = rotor_condition([DatedFinding(k, swinging) for k in range(3)])
+    assert condition.state is HEALTHY
+    assert condition.reasons[-1].startswith("load oscillation in 3 of the latest 3 records")
 
 
 def test_a_record_that_cannot_tell_takes_no_condition_away() -> None:

@@ -28,6 +28,7 @@ from testing.service.conditions import DRIFTING, FAULT, HEALTHY, tell
 from testing.service.job_runner import RUNNER
 from testing.service.observations import HOUR_NS
 from testing.service.plants import NOW_NS, fault
+from testing.service.rotor_and_supply import BROKEN_ROTOR, ExaminedRecordings
 from tests.service.api.serving import serving
 from tests.service.fixtures import database_url, engine, repository
 
@@ -119,6 +120,17 @@ def test_health_says_what_to_do_then_why_then_what_the_latest_recording_says(
     ]
     places = [shown.index(words) for words in in_order]
     assert places == sorted(places)
+
+
+def test_health_tells_the_rotor(mcc: Mcc, repository: Repository, tmp_path: Path) -> None:
+    assert "rotor not told" in unframed(mcc("health", "PUMP-A1"))
+    recorded = ExaminedRecordings(repository, RecordingStore(tmp_path / "recordings"))
+    for _ in range(2):
+        recorded.add(BROKEN_ROTOR)
+    shown = unframed(mcc("health", "PUMP-A1"))
+    assert "rotor fault, -29.0 dB what to do Have the cage inspected" in shown
+    assert "2 of the latest 2 records show a fault of the cage" in shown
+    assert json.loads(mcc("health", "PUMP-A1", "--json"))["rotor"]["state"] == "fault"
 
 
 def test_a_motor_without_a_record_has_no_figures(mcc: Mcc) -> None:

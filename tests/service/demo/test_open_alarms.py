@@ -4,7 +4,7 @@ from pathlib import Path
 
 from service.api import ApiContext, create_app
 from service.cli.demo.month import conditions_table
-from service.client.rest_client import ServiceClient
+from service.client.rest_client import Document, ServiceClient
 from service.configuration.settings import Settings
 from service.demo.open_alarms import alarm_text, open_alarms_of
 from service.demo.results import DemoMotor
@@ -60,5 +60,13 @@ def test_a_motors_alarm_stands_beside_its_condition(repository: Repository, tmp_
         "candidates": [],
         "stale": False,
     }
-    table = conditions_table(motors, dict.fromkeys(("PUMP-A1", "FAN-A2"), said), after)
+    rotors: dict[str, Document] = {
+        "PUMP-A1": {"state": "fault", "severity_dB": -29.04, "reasons": []},
+        "FAN-A2": {"state": "healthy", "severity_dB": -61.0, "reasons": ["load oscillation in 3 of 3"]},
+    }
+    table = conditions_table(motors, dict.fromkeys(("PUMP-A1", "FAN-A2"), said), rotors, after)
+    assert [str(cell) for cell in table.columns[-2].cells] == [
+        "fault, -29.0 dB",
+        "healthy, -61.0 dB, load oscillation",
+    ]
     assert [str(cell) for cell in table.columns[-1].cells] == ["critical, acknowledged", "-"]

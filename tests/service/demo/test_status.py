@@ -53,6 +53,22 @@ def test_right_is_verdict_and_phase_while_the_reference_is_learnt(
     assert MotorStatus(found, truth).is_right is right
 
 
+@pytest.mark.parametrize(
+    ("state", "broken_bars", "right"),
+    [
+        ("fault", 1.0, True),
+        ("fault", 0.0, False),
+        ("watch", 1.0, None),
+        ("healthy", 0.4, None),
+        ("healthy", 0.0, True),
+        ("unsupported", 0.0, None),
+    ],
+)
+def test_a_rotor_is_right_where_bars_are_broken(state: str, broken_bars: float, right: bool | None) -> None:
+    truth = Truth(mu_f=0.0, theta_f=None, load_level=0.8, broken_bars=broken_bars)
+    assert MotorStatus(health("healthy", None), truth, rotor={"state": state}).is_rotor_right is right
+
+
 @pytest.mark.campaign
 @pytest.mark.timeout(300)
 def test_a_demo_elsewhere_is_played_and_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

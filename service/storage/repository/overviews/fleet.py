@@ -5,8 +5,10 @@ from collections.abc import Mapping
 from sqlalchemy import or_, select
 from sqlalchemy.orm import Session, aliased
 
+from core.rotor.finding import RotorState
+from service.alarms.rotor_rules import KINDS
 from service.storage.models import AlarmRow, DiagnosisRow, IedRow, MotorRow
-from service.storage.models.alarms import in_state
+from service.storage.models.alarms import in_state, is_open
 from service.storage.records import CallingAlarms, FleetMotor, LatestFigures, MotorEntry
 from service.storage.repository.conditions.conditions import conditions_of
 from service.storage.repository.sessions import Sessions, columns_of
@@ -28,6 +30,7 @@ class FleetRows(Sessions):
             conditions = conditions_of(session)
             figures = {one.motor: one for one in latest_figures_of(session)}
             alarms = _calling(session)
+            rotors = _rotors(session)
             return tuple(
                 FleetMotor(
                     motor=MotorEntry(*entry),
@@ -36,6 +39,7 @@ class FleetRows(Sessions):
                     link_changed_ns=changed_ns,
                     figures=figures.get(entry[0]),
                     alarms=alarms.get(entry[0]),
+                    rotor=rotors.get(entry[0]),
                 )
                 for *entry, link, changed_ns in session.execute(query)
                 if entry[0] in conditions
@@ -78,3 +82,12 @@ def _calling(session: Session) -> Mapping[str, CallingAlarms]:
             # The last one is the most urgent, and the latest of those.
             found[motor] = CallingAlarms(number, urgency, alarm, priority, raised_ns)
     return found
+
+
+def _rotors(session: Session) -> Mapping[str, RotorState]:
+    """Return the state of each rotor that somebody has to look after: that of its standing alarm."""
+    state_of = {kind: state for state, kind in KINDS.items()}
+    query = select(AlarmRow.motor, AlarmRow.kind).where(
+        is_open(), AlarmRow.kind.in_(tuple(state_of)), AlarmRow.cleared_ns.is_(None)
+    )
+    return {motor: state_of[kind] for motor, kind in session.execute(query) if motor is not None}

@@ -5,6 +5,9 @@ from typing import Any
 import httpx
 import pytest
 
+from core.rotor.finding import RotorState
+from core.rotor.start_finding import StartSideband
+from core.starts.examined import ExaminedStart
 from core.time_stamps import rfc3339
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
@@ -16,6 +19,7 @@ from testing.service.rotor_and_supply import (
     SUPPLY,
     ExaminedRecordings,
 )
+from testing.service.starts import START, RecordedStarts
 
 MOTOR = "/api/v1/motors/PUMP-A1"
 SHOWN = {"rotor": BROKEN_ROTOR.as_dict(), "supply": SUPPLY.as_dict()}
@@ -93,3 +97,24 @@ def test_the_condition_of_a_rotor_follows_from_all_its_records(
     assert found["bins"] == [{"bin": 6, "records": 5, "baseline_dB": -50.0}]
     assert found["advice"].startswith("Have the cage inspected")
     assert client.get("/api/v1/motors/PUMP-A/rotor").status_code == 404
+
+
+def test_a_start_stands_beside_what_the_running_motor_shows(
+    client: httpx.Client, recorded: ExaminedRecordings, repository: Repository, store: RecordingStore
+) -> None:
+    starts = RecordedStarts(repository, store)
+    assert client.get(f"{MOTOR}/rotor").json()["start"] is None
+    recorded.add(BROKEN_ROTOR)
+    assert client.get(f"{MOTOR}/rotor").json()["start"] is None
+    broken = StartSideband(RotorState.FAULT, -28.0, (-38.0, -25.0), -45.0, 12, ("told",))
+    short = StartSideband(RotorState.UNSUPPORTED, None, None, None, 1, ("too short",))
+    agreeing = starts.add(ExaminedStart(START, sideband=broken))
+    starts.add(ExaminedStart(START, sideband=short))
+    found = client.get(f"{MOTOR}/rotor").json()["start"]
+    assert (found["recording_id"], found["state"], found["agrees"]) == (agreeing, "fault", True)
+    assert found["words"].startswith("both agree: running, it says fault")
+    sound = StartSideband(RotorState.HEALTHY, None, None, -45.0, 12, ("none",))
+    starts.add(ExaminedStart(START, sideband=sound))
+    found = client.get(f"{MOTOR}/rotor").json()["start"]
+    assert found["agrees"] is False
+    assert "they do not agree" in found["words"]

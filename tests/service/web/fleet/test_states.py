@@ -7,6 +7,7 @@ import pytest
 from core.condition.kinds import State
 from core.diagnosis.verdict import Verdict
 from core.machines.parameters import ParametersSource
+from core.rotor.finding import RotorState
 from core.units import NANOSECONDS_PER_DAY, NANOSECONDS_PER_SECOND
 from service.storage.records import CallingAlarms, ConditionEntry, FleetMotor, LatestFigures, MotorEntry
 from service.storage.states import AlarmPriority, LinkState
@@ -65,6 +66,19 @@ def row(
 
 def calling(urgency: int, priority: AlarmPriority) -> CallingAlarms:
     return CallingAlarms(1, urgency, "an-alarm", priority, NOW_NS)
+
+
+def test_a_broken_rotor_counts_as_a_fault_beside_a_healthy_winding() -> None:
+    motor = motor_of("PUMP", seen(entry_of(HEALTHY), 1))
+    broken = row_of(replace(motor, rotor=RotorState.FAULT), NOW_NS, 7.0)
+    sound = row_of(motor, NOW_NS, 7.0)
+    assert (broken.state, broken.all_states[0]) == (FleetState.HEALTHY, FleetState.FAULT)
+    assert broken.needs_attention
+    assert not sound.needs_attention
+    assert broken.advice.startswith("Have the cage inspected")
+    assert sorted((sound, broken), key=lambda one: one.attention)[0] is broken
+    assert FleetFilter(state=FleetState.FAULT, text="rotor").chosen([sound, broken]) == [broken]
+    assert counts([sound, broken])[FleetState.FAULT] == 1
 
 
 def test_what_needs_attention_comes_first() -> None:

@@ -9,6 +9,8 @@ import pytest
 from lxml import html
 
 from core.rotor.finding import RotorState
+from core.rotor.start_finding import StartSideband
+from core.starts.examined import ExaminedStart
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from testing.service.rotor_and_supply import (
@@ -18,6 +20,7 @@ from testing.service.rotor_and_supply import (
     SUPPLY,
     ExaminedRecordings,
 )
+from testing.service.starts import START, RecordedStarts
 from tests.service.web.motor.recorded import MOTOR, know
 from tests.service.web.pages import page, words
 
@@ -81,6 +84,7 @@ def test_severity_is_drawn_by_load_with_what_would_be_seen(
     assert drawn["at 30 to 40 % load"] == [None, -66.0, None]
     assert drawn["at 60 to 70 % load"] == [-68.0, None, -29.0]
     assert drawn["would be seen"] == [-52.0] * 3
+    assert [one["y"] for one in chart(document, "rotor-severity")["limits"]] == [-42.0, -36.0]
     assert drawn[RotorState.FAULT] == [None, None, -29.0]
     sidebands = {one["label"]: one["values"] for one in chart(document, "rotor-sidebands")["series"]}
     assert sidebands["lower, (1 - 2s) f"] == [-71.5, -71.5, -35.5]
@@ -93,3 +97,14 @@ def test_the_supply_is_told_and_drawn(client: httpx.Client, recorded: ExaminedRe
     drawn = {one["label"]: one["values"] for one in chart(document, "supply")["series"]}
     assert drawn["unbalance of the voltages (NEMA)"] == [0.68]
     assert drawn["voltage beside the rated one"] == [-0.27]
+
+
+def test_the_start_is_told_beside_the_running_motor(
+    client: httpx.Client, recorded: ExaminedRecordings, repository: Repository, store: RecordingStore
+) -> None:
+    recorded.add(BROKEN_ROTOR)
+    sound = StartSideband(RotorState.HEALTHY, None, None, -45.0, 12, ("none",))
+    start = RecordedStarts(repository, store).add(ExaminedStart(START, sideband=sound), MOTOR)
+    document = page(client.get(HERE))
+    assert "they do not agree: running, it says fault" in " ".join(words(document, "#rotor p"))
+    assert document.cssselect(f'#rotor a[href="/recordings/{start}"]')
