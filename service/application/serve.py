@@ -244,6 +244,7 @@ def _parts(
         store,
         gateway_problem=gateways.not_running,
         restart_delay_s=RESTART_POLICY.backoff.longest_s,
+        compute=jobs.compute,
         settings_file=settings_file,
         directories=_written(settings),
     )

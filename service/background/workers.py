@@ -12,6 +12,7 @@ from service.background import (
     audit_forwarding,
     backups,
     housekeeping,
+    joining,
     orphaned_requests,
     retention,
     scheduling,
@@ -22,6 +23,7 @@ from service.background.alarm_steps import AlarmSteps
 from service.background.audit_forwarding import AuditForwarding
 from service.background.backups import DailyBackup
 from service.background.housekeeping import Housekeeping
+from service.background.joining import SeriesJoiner
 from service.background.orphaned_requests import OrphanedRequestEnder
 from service.background.retention import Retention
 from service.background.scheduling import Scheduler
@@ -31,6 +33,7 @@ from service.plant import Plant
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from service.timing.periodic_worker import PeriodicWorker
+from service.waveforms.computing import Compute
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +48,7 @@ class Periods:
     audit_forwarding_s: float = audit_forwarding.PERIOD_S
     alarm_sources_s: float = alarm_sources.PERIOD_S
     backups_s: float = backups.PERIOD_S
+    joining_s: float = joining.PERIOD_S
 
 
 PERIODS = Periods()
@@ -58,6 +62,7 @@ def background_workers(
     *,
     gateway_problem: Callable[[], str | None],
     restart_delay_s: float,
+    compute: Compute,
     directories: Iterable[Path] = (),
     settings_file: Path | None = None,
     periods: Periods = PERIODS,
@@ -65,8 +70,8 @@ def background_workers(
     """Return one worker for each periodic work, not started yet.
 
     gateway_problem: why gateways of this service do not run; None while all do.  restart_delay_s: the longest
-    pause before a gateway that ended is started again.  directories: those that the service writes to.
-    settings_file: goes into back-ups.
+    pause before a gateway that ended is started again.  compute: has the numbers done.  directories: those
+    that the service writes to.  settings_file: goes into back-ups.
     """
     scheduler = Scheduler(
         plant.motors, repository, buses=plant.buses, metering_period_s=settings.metering_period_s
@@ -80,7 +85,13 @@ def background_workers(
     ender = OrphanedRequestEnder(
         settings, repository, gateway_problem=gateway_problem, restart_delay_s=restart_delay_s
     )
+    joiner = SeriesJoiner(repository, store, compute, time_zones=plant.time_zones())
     workers = {
+        "joining": PeriodicWorker(
+            "joining of recordings",
+            lambda: joiner.join_ready(time.time_ns()),
+            period_s=periods.joining_s,
+        ),
         "schedules": PeriodicWorker(
             "scheduling", lambda: scheduler.request_due(time.time_ns()), period_s=periods.scheduling_s
         ),

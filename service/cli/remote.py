@@ -11,6 +11,7 @@ from service.client.rest_client import Document, ServiceClient, ServiceError, se
 from service.client.verdicts import level, load, percent, reasons_of, verdict_text
 
 ENDED = ("diagnosed", "failed")
+JOINED_ENDED = ("diagnosed", "rejected", "failed")
 POLL_PERIOD_S = 0.25
 
 SO_FAR = {
@@ -31,15 +32,18 @@ def what_next(command: str, motor: str) -> str:
     )
 
 
-def trigger_motor(url: str, motor: str, *, key: str | None, wait_s: float, as_json: bool) -> None:
+def trigger_motor(
+    url: str, motor: str, *, key: str | None, wait_s: float, seconds: float | None, as_json: bool
+) -> None:
     """Request a recording of a motor and, for at most `wait_s`, follow it to its verdict.
 
-    The same `key` again requests nothing new; the first request with it is followed.
+    The same `key` again requests nothing new; the first request with it is followed. With `seconds` a series
+    of recordings is requested, and followed until it is joined and that is diagnosed.
 
     Raises CommandError.
     """
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        request = service.request_recording(motor, idempotency_key=key)
+        request = service.request_recording(motor, idempotency_key=key, seconds=seconds)
         _warn_of_a_link_that_is_down(service, motor)
         deadline_s = time.monotonic() + wait_s
         state = request["state"]
@@ -50,8 +54,11 @@ def trigger_motor(url: str, motor: str, *, key: str | None, wait_s: float, as_js
                 state = request["state"]
                 progress().print(f"{motor}: {state}")
         not_ready = service.what_is_not_ready() if wait_s and state not in ENDED else None
+        if state == "diagnosed" and seconds is not None:
+            request = _joined(service, request, deadline_s)
         if state == "diagnosed":
-            recording = service.get(f"/recordings/{segment(str(request['recording_id']))}")
+            made = request["joined_recording_id"] or request["recording_id"]
+            recording = service.get(f"/recordings/{segment(str(made))}")
             request = {**request, "diagnosis": recording["diagnosis"]}
     if state == "failed":
         raise CommandError(f"{motor}: {request['reason']}", details={"event_report": dict(request)})
@@ -72,6 +79,24 @@ def trigger_motor(url: str, motor: str, *, key: str | None, wait_s: float, as_js
         words = f"{motor}: recording request {request['id']}: {SO_FAR.get(str(state), state)}"
         results().print(Text(words), soft_wrap=True)
         results().print(Text(what_next("mcc trigger", motor)), soft_wrap=True)
+
+
+def _joined(service: ServiceClient, request: Document, deadline_s: float) -> Document:
+    """Return the request once its series was joined and that is diagnosed, or when the time is over."""
+    while time.monotonic() < deadline_s:
+        request = service.recording_request(str(request["id"]))
+        joined = request["joined_recording_id"]
+        if joined is None and request["joined_remark"] is not None:
+            break
+        if joined is not None:
+            found = service.get(f"/recordings/{segment(str(joined))}")
+            if found["state"] in JOINED_ENDED:
+                break
+        time.sleep(POLL_PERIOD_S)
+    remark = request["joined_remark"]
+    if remark is not None:
+        progress().print(Text(one_line(f"the series: {remark}"), style="yellow"), soft_wrap=True)
+    return request
 
 
 def release_relay(url: str, relay: str, *, as_json: bool) -> None:

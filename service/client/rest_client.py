@@ -141,14 +141,17 @@ class ServiceClient:
         except (httpx.TransportError, httpx.UnsupportedProtocol) as error:
             raise ServiceError(f"{self._url} did not send all of its answer ({error})") from error
 
-    def request_recording(self, motor: str, *, idempotency_key: str | None = None) -> Document:
+    def request_recording(
+        self, motor: str, *, idempotency_key: str | None = None, seconds: float | None = None
+    ) -> Document:
         """Request a recording of the motor; the same key again requests nothing new.
 
-        Raises ServiceError.
+        seconds: so much, as a series of recordings that is joined; None for one. Raises ServiceError.
         """
         headers = {} if idempotency_key is None else {b"Idempotency-Key": idempotency_key.encode()}
         path = f"{API}/motors/{segment(motor)}/event-reports"
-        return _document(self._request("POST", path, {}, headers))
+        wanted = None if seconds is None else {"seconds": seconds}
+        return _document(self._request("POST", path, {}, headers, document=wanted))
 
     def release(self, relay: str) -> None:
         """End the quarantine of a relay. Raises ServiceError."""

@@ -47,7 +47,7 @@ TABLE: Table[JudgedRecording] = Table(
         ),
         text("reason", "why it was refused, or does not count", lambda row: row.entry.reason),
         text("ied", "relay that made it", lambda row: row.entry.ied),
-        text("source", "relay or upload", lambda row: row.entry.source),
+        text("source", "relay, upload or joined", lambda row: row.entry.source),
         text("name", "name of its files without the suffix", lambda row: row.entry.name),
         whole("size_bytes", "byte", "size of its files", lambda row: row.entry.size_bytes),
         time("announced_time", "when the service first saw it", lambda row: row.entry.announced_ns),

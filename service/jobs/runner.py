@@ -295,8 +295,12 @@ class JobRunner:
             case Rejected(reason):
                 self._repository.reject_recording(job.id, reason, now_ns=time.time_ns(), runner=self._id)
                 log.warning("recording rejected", recording=job.recording_id, reason=storable(reason))
-            case Diagnosed(diagnosis, recorded_ns, observation, remark, has_time_code, start, rotor, supply):
+            case Diagnosed(
+                diagnosis, recorded_ns, observation, remark, has_time_code, start, rotor, supply, length
+            ):
                 now_ns, left_out = time.time_ns(), None
+                if claimed.is_joined:  # the recordings it is made of tell the condition
+                    observation = None
                 try:
                     require_possible_time(recorded_ns, now_ns)
                 except ImpossibleTimeError as error:
@@ -317,6 +321,7 @@ class JobRunner:
                         start=start,
                         rotor=rotor,
                         supply=supply,
+                        length=length,
                     )
                 except UnstorableDiagnosisError as error:
                     self._retry(claimed, f"the diagnosis cannot be stored: {error}")

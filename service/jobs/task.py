@@ -10,6 +10,7 @@ from core.machines.parameters import Motor
 from core.rotor.finding import RotorFinding
 from core.starts.examined import ExaminedStart
 from core.supply.figures import SupplyFigures
+from service.storage.records import RecordLength
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +39,7 @@ class Diagnosed:
     operation_remark: why the motor's parameters cannot be estimated from this start; None where they can, and
     for other records.
     has_time_code: whether the record tells how far its times are ahead of UTC.
+    length: that of the record.
     start: what a start shows; None of other records, and where nothing can be measured.  rotor, supply: what
     the record shows of them; None where it shows nothing.
     """
@@ -50,6 +52,7 @@ class Diagnosed:
     start: ExaminedStart | None = None
     rotor: RotorFinding | None = None
     supply: SupplyFigures | None = None
+    length: RecordLength | None = None
 
 
 @dataclass(frozen=True, slots=True)

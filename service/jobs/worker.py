@@ -16,6 +16,7 @@ from core.recordings.local_time import in_utc
 from service.condition.healthy_records import MOST_VALUES, learnt
 from service.jobs.task import Diagnosed, DiagnosisTask, Outcome, Rejected
 from service.jobs.worker_process import follow_service
+from service.storage.records import RecordLength
 
 if TYPE_CHECKING:
     from core.starts.examined import ExaminedStart
@@ -59,7 +60,15 @@ def diagnose_recording(task: DiagnosisTask) -> Outcome:
         start,
         examined.rotor,
         examined.supply,
+        _length(recording),
     )
+
+
+def _length(recording: Recording) -> RecordLength:
+    """Return how long a record is, and how much of it is before its trigger."""
+    index = recording.trigger_index
+    before_s = None if index is None else float(recording.time_s[index])
+    return RecordLength(recording.duration_s, before_s)
 
 
 def _why_not_commissioned_from(recording: Recording, motor: Motor) -> str | None:

@@ -102,6 +102,8 @@ class RecordingSource(StrEnum):
 
     RELAY = "relay"
     UPLOAD = "upload"
+    JOINED = "joined"
+    """Made by the service of several that a relay recorded one after the other."""
 
 
 class DeletedBy(StrEnum):

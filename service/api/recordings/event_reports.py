@@ -14,7 +14,7 @@ from service.api.context import Context, path_to
 from service.api.document import Name
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
-from service.api.recordings.schemas import EventReport
+from service.api.recordings.schemas import EventReport, RecordingWanted
 
 router = APIRouter(tags=["event reports"])
 
@@ -46,14 +46,19 @@ def request_event_report(
     name: Name,
     caller: By,
     idempotency_key: IdempotencyKey = None,
+    wanted: RecordingWanted | None = None,
 ) -> EventReport:
-    """Request a recording from the motor's relay. Follow the request until it is diagnosed or failed."""
+    """Request a recording from the motor's relay. Follow the request until it is diagnosed or failed.
+
+    With `seconds` the relay makes a series of recordings that overlap, which are joined to one.
+    """
     recording_request = context.repository.request_recording(
         name,
         by=caller,
         now_ns=time.time_ns(),
         idempotency_key=idempotency_key,
         most_open=context.settings.max_open_requests,
+        seconds=None if wanted is None else wanted.seconds,
     )
     response.headers["Location"] = path_to(request, "get_event_report", report_id=recording_request.id)
     return EventReport.model_validate(recording_request)

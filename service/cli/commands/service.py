@@ -42,12 +42,21 @@ def trigger(
         str | None,
         typer.Option(metavar="TEXT", help="A word of your own: the same one again triggers nothing new."),
     ] = None,
+    seconds: Annotated[
+        float | None,
+        typer.Option(
+            min=1.0,
+            max=30.0,
+            metavar="SECONDS",
+            help="Record so much, as a series of records that overlap and are joined.",
+        ),
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """Request a recording of a motor from its relay."""
     from service.cli.remote import trigger_motor
 
-    trigger_motor(url, motor, key=key, wait_s=wait, as_json=as_json)
+    trigger_motor(url, motor, key=key, wait_s=wait, seconds=seconds, as_json=as_json)
 
 
 @commands.command()

@@ -101,12 +101,14 @@ class RelaySession:
             policy=policy.records,
         )
         self._clock = ClockMonitor(relay.name, repository)
+        self._stopping = Event()
         self._triggers = TriggerQueue(
             relay,
             repository,
             clock=self._clock,
             record_timeout_s=settings.record_timeout_s,
             gateway=gateway,
+            pause=self._stopping.wait,
         )
         self._metering = (
             None
@@ -119,7 +121,6 @@ class RelaySession:
         self._visit_marks = visit_marks
         self._mark: VisitMark | None = None
         self._client: Client | None = None
-        self._stopping = Event()
         self._wake_up = Event()
         self._requested = Event()
         self._record_expected_until_s = 0.0

@@ -10,7 +10,7 @@ up after another took over its relays, operates nothing.
 """
 
 import time
-from collections.abc import Set
+from collections.abc import Callable, Set
 from typing import Protocol
 
 import structlog
@@ -28,6 +28,7 @@ from mms import (
 )
 from service.collector.records.directory import Scan
 from service.collector.triggers.request_deadlines import RequestDeadlines, UnansweredRequests
+from service.collector.triggers.series import NoSeriesError, Rhythm, rhythm_of
 from service.plant import Acquisition, Relay, TriggerAction, acquisition_from_scl
 from service.storage import Repository
 from service.storage.records import RecordingRequest
@@ -43,6 +44,12 @@ link leave a request as it is until its time limit."""
 
 HOLD_S = 0.05
 """The remote bit stays set so long: relays look at their equations every quarter cycle, some less often."""
+
+
+def pause_uninterrupted(pause_s: float) -> bool:
+    """Wait; nothing ends the wait early."""
+    time.sleep(pause_s)
+    return False
 
 
 class ControlClock(Protocol):
@@ -69,12 +76,15 @@ class TriggerQueue:
         clock: ControlClock,
         record_timeout_s: float,
         gateway: str | None = None,
+        pause: Callable[[float], bool] = pause_uninterrupted,
     ) -> None:
+        """pause: waits for so many seconds; returns whether the session is to end instead."""
         self._relay = relay
         self._acquisition = acquisition_from_scl(relay)
         self._repository = repository
         self._clock = clock
         self._gateway = gateway
+        self._pause = pause
         self._deadlines = RequestDeadlines(record_timeout_s)
         self._unanswered = UnansweredRequests(relay.name, repository, self._deadlines)
         self._outstanding: RecordingRequest | None = None
@@ -212,13 +222,25 @@ class TriggerQueue:
     ) -> bool:
         if self._is_busy(client, request, control):
             return True
+        rhythm = None
+        if request.seconds is not None:
+            try:
+                rhythm = rhythm_of(self._repository.record_length(request.motor), request.seconds)
+            except NoSeriesError as error:
+                self._fail(request, f"{self._relay.name}: {error}")
+                return False
         try:
             if _is_set(client, control):
                 client.operate(control, False)  # noqa: FBT003 - the value of a control
             stamp_before = self._clock.control_stamp(client, control)
-            self._repository.mark_triggered(request.id, now_ns=time.time_ns(), gateway=self._gateway)
+            self._repository.mark_triggered(
+                request.id,
+                now_ns=time.time_ns(),
+                gateway=self._gateway,
+                triggers=None if rhythm is None else rhythm.triggers,
+            )
             self._operated_for, self._listed_before = request.id, listed
-            asked_ns = time.time_ns()
+            asked_ns, asked_s = time.time_ns(), time.monotonic()
             client.operate(control, True)  # noqa: FBT003
             answered_ns = time.time_ns()
         except REFUSALS as error:
@@ -229,13 +251,35 @@ class TriggerQueue:
         stamp = self._clock.control_stamp(client, control)
         if stamp is not None and stamp != stamp_before:
             self._clock.note_change(stamp, asked_ns=asked_ns, answered_ns=answered_ns)
+        self._end_pulse(client, control)
+        if rhythm is not None:
+            self._repeat(client, control, rhythm, asked_s)
+        return True
+
+    def _end_pulse(self, client: Client, control: str) -> None:
+        """Reset the trigger, unless it resets itself. Raises MmsError (the link)."""
         if self._acquisition.trigger_action is TriggerAction.PULSE and not _is_set(client, control):
-            return True
+            return
         try:
             client.operate(control, False)  # noqa: FBT003
         except REFUSALS as error:
             log.warning("the trigger stays set", relay=self._relay.name, control=control, reason=str(error))
-        return True
+
+    def _repeat(self, client: Client, control: str, rhythm: Rhythm, began_s: float) -> None:
+        """Trigger again and again, each time before the pre-trigger time has passed since the last record.
+
+        Where it ends early, the records made so far are joined. Raises MmsError (the link).
+        """
+        for number in range(1, rhythm.triggers):
+            if self._pause(max(0.0, began_s + number * rhythm.period_s - time.monotonic())):
+                return
+            try:
+                client.operate(control, True)  # noqa: FBT003
+            except REFUSALS as error:
+                log.warning("the series ends early", relay=self._relay.name, reason=str(error))
+                return
+            time.sleep(HOLD_S)
+            self._end_pulse(client, control)
 
     def _fail(self, request: RecordingRequest, reason: str) -> None:
         self._repository.fail_recording_request(request.id, reason, now_ns=time.time_ns())

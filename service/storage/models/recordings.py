@@ -1,6 +1,6 @@
 """Tables of the recordings: those asked for, those a relay lists, and those in the store."""
 
-from sqlalchemy import ForeignKey, Index, String, text
+from sqlalchemy import Double, ForeignKey, Index, String, text
 from sqlalchemy.orm import Mapped, mapped_column
 
 from core.operation import Operation
@@ -18,6 +18,8 @@ class RecordingRow(Base):
     """A recording. operation: what the motor does in it; null while nobody has looked, or it cannot be told.
 
     operation_remark: why the parameters of a motor cannot be estimated from this start; null where they can.
+    duration_s, pre_trigger_s: its length, and how much of it is before the trigger; null before it was read.
+    parts: ids of the recordings that it was joined from; null of others.
     """
 
     __tablename__ = "recordings"
@@ -42,6 +44,9 @@ class RecordingRow(Base):
     clock_measured_ns: Mapped[int | None]
     operation: Mapped[Operation | None]
     operation_remark: Mapped[str | None]
+    duration_s: Mapped[float | None] = mapped_column(Double)
+    pre_trigger_s: Mapped[float | None] = mapped_column(Double)
+    parts: Mapped[tuple[str, ...] | None]
 
     __table_args__ = (
         Index("ux_recordings_relay", "ied", "name", "digest", unique=True),
@@ -118,6 +123,12 @@ class BaselineRecordingRow(Base):
 
 
 class RecordingRequestRow(Base):
+    """A request of one recording, or of a series that is joined to one of so many seconds.
+
+    triggers: how often the relay is triggered for a series.  joined_recording_id: what became of the series.
+    joined_remark: why that is shorter than asked for, or why there is none.
+    """
+
     __tablename__ = "recording_requests"
 
     id: Mapped[str] = mapped_column(String(36), primary_key=True)
@@ -134,6 +145,10 @@ class RecordingRequestRow(Base):
     fetched_ns: Mapped[int | None]
     diagnosed_ns: Mapped[int | None]
     failed_ns: Mapped[int | None]
+    seconds: Mapped[float | None] = mapped_column(Double)
+    triggers: Mapped[int | None]
+    joined_recording_id: Mapped[str | None] = mapped_column(String(36))
+    joined_remark: Mapped[str | None]
 
     __table_args__ = (
         Index("ux_recording_requests_key", "motor", "origin", "idempotency_key", unique=True),

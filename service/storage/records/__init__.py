@@ -59,7 +59,14 @@ from service.storage.records.notifications import (
 )
 from service.storage.records.pages import Cursor, Page
 from service.storage.records.plant import IedEntry, MotorEntry, SiteEntry
-from service.storage.records.recordings import RecordingEntry, RecordingFile, RecordingRequest, RemoteRecord
+from service.storage.records.recordings import (
+    RecordingEntry,
+    RecordingFile,
+    RecordingRequest,
+    RecordLength,
+    RemoteRecord,
+    Series,
+)
 from service.storage.records.relays import (
     ClockReading,
     GatewayEntry,
@@ -136,6 +143,7 @@ __all__ = [
     "Page",
     "Quantity",
     "Quarantine",
+    "RecordLength",
     "RecordObservation",
     "RecordedStarts",
     "RecordingEntry",
@@ -146,6 +154,7 @@ __all__ = [
     "Role",
     "RotorEntry",
     "Sample",
+    "Series",
     "SiteEntry",
     "StartEntry",
     "SupplyEntry",

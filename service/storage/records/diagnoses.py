@@ -36,6 +36,7 @@ class ClaimedJob:
     triggered_ns: when that relay was triggered for it; None where the service did not ask for it.
     announced_ns: when the recording was first seen.
     is_repetition: whether somebody asked for another diagnosis of a recording.
+    is_joined: whether the recording was joined from others, which tell the motor's condition already.
     """
 
     job: Job
@@ -46,6 +47,7 @@ class ClaimedJob:
     triggered_ns: int | None = None
     announced_ns: int = 0
     is_repetition: bool = False
+    is_joined: bool = False
 
 
 @dataclass(frozen=True, slots=True)

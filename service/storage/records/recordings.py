@@ -14,7 +14,12 @@ from service.storage.states import (
 
 @dataclass(frozen=True, slots=True)
 class RecordingRequest:
-    """A recording that somebody requested of a relay, with one time for each state it went through."""
+    """A recording that somebody requested of a relay, with one time for each state it went through.
+
+    seconds: so much is to be recorded, as a series that is joined; None for one record.
+    triggers: how often the relay is triggered for the series.
+    joined_recording_id: what the series was joined to.  joined_remark: why that is shorter, or is not there.
+    """
 
     id: str
     motor: str
@@ -29,6 +34,10 @@ class RecordingRequest:
     fetched_ns: int | None
     diagnosed_ns: int | None
     failed_ns: int | None
+    seconds: float | None = None
+    triggers: int | None = None
+    joined_recording_id: str | None = None
+    joined_remark: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +58,8 @@ class RecordingEntry:
     about that time.
     operation: what the motor does in it; None while nobody has looked, or it cannot be told.
     operation_remark: why the parameters of a motor cannot be estimated from this start; None where they can.
+    duration_s, pre_trigger_s: its length, and how much of it is before the trigger; None before it was read.
+    parts: the recordings that it was joined from; None of others.
     """
 
     id: str
@@ -71,6 +82,33 @@ class RecordingEntry:
     clock_measured_ns: int | None
     operation: Operation | None
     operation_remark: str | None
+    duration_s: float | None = None
+    pre_trigger_s: float | None = None
+    parts: tuple[str, ...] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class RecordLength:
+    """How long a record is, and how much of it is before its trigger; None where it names none."""
+
+    duration_s: float
+    pre_trigger_s: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Series:
+    """The recordings of a series that somebody asked for, by their times.
+
+    digests: their places in the recording store.  is_complete: whether all are there that the relay was
+    triggered for.
+    """
+
+    request_id: str
+    motor: str
+    recording_ids: tuple[str, ...]
+    digests: tuple[str, ...]
+    recorded_ns: tuple[int, ...]
+    is_complete: bool
 
 
 @dataclass(frozen=True, slots=True)

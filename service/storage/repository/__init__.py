@@ -36,6 +36,7 @@ from service.storage.repository.recordings.folders import FolderRows
 from service.storage.repository.recordings.recordings import RecordingRows
 from service.storage.repository.recordings.requests import RecordingRequestRows
 from service.storage.repository.recordings.retention import RetentionRows
+from service.storage.repository.recordings.series import SeriesRows
 from service.storage.repository.relays.findings import FindingsRows
 from service.storage.repository.relays.leases import LeaseRows
 from service.storage.repository.relays.links import LinkRows
@@ -53,6 +54,7 @@ class Repository(
     QuarantineRows,
     RecordingRequestRows,
     RecordingRows,
+    SeriesRows,
     RemoteRecordRows,
     JobRows,
     JobRunnerRows,

@@ -141,7 +141,10 @@ class RelayList:
 
 @dataclass(frozen=True, slots=True)
 class RelayDetails:
-    """What the page of one relay shows. is_held: it is set aside now."""
+    """What the page of one relay shows. is_held: it is set aside now.
+
+    record_length: of its latest record, and the part before the trigger [s].
+    """
 
     line: RelayLine
     in_service: bool
@@ -156,6 +159,7 @@ class RelayDetails:
     findings: RelayFindings | None
     certificates: Sequence[CertificateEnd]
     used: Sequence[tuple[str, str | None]] = field(default=())
+    record_length: tuple[float, float] | None = None
 
     @property
     def entry(self) -> IedEntry:
@@ -203,6 +207,7 @@ def relay_details(
     history = link_history(repository.link_history(name, from_ns=from_ns), days=days, now_ns=now_ns)
     findings = repository.relay_findings(name)
     here = address("/relays", name)
+    lengths = [repository.record_length(motor) for motor in overview.motors]
     return RelayDetails(
         line=_line(overview, settings),
         in_service=repository.is_in_service(name),
@@ -221,6 +226,7 @@ def relay_details(
         used=()
         if findings is None
         else [(words, _text(findings.acquisition.get(key))) for key, words in USED],
+        record_length=next((length for length in lengths if length is not None), None),
     )
 
 

@@ -16,7 +16,8 @@ from service.configuration.settings import Settings
 from service.plant import Schedule
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
-from service.storage.records import RecordingRequest
+from service.storage.records import RecordingRequest, Series
+from service.waveforms.computing import compute_here
 from testing.service.plants import two_motor_plant
 from testing.waiting import eventually
 from tests.service.api.serving import serving
@@ -32,6 +33,7 @@ OFTEN = Periods(
     alarm_steps_s=0.01,
     alarm_sources_s=0.01,
     backups_s=0.01,
+    joining_s=0.01,
 )
 PARTS = (
     "schedules",
@@ -41,6 +43,7 @@ PARTS = (
     "alarm_steps",
     "alarm_sources",
     "backups",
+    "joining",
 )
 
 
@@ -77,6 +80,10 @@ class FaultyRepository(Repository):
         self._fail_for("backups")
         return super().is_backup_due(due_ns, now_ns=now_ns)
 
+    def series_to_join(self, *, now_ns: int) -> tuple[Series, ...]:
+        self._fail_for("joining")
+        return super().series_to_join(now_ns=now_ns)
+
     def _fail_for(self, part: str) -> None:
         if part == self.part:
             raise RuntimeError("a bug")
@@ -102,6 +109,7 @@ def serving_workers(repository: Repository, store: RecordingStore, directory: Pa
         store,
         gateway_problem=lambda: None,
         restart_delay_s=0.0,
+        compute=compute_here,
         periods=OFTEN,
     )
     readiness = {name: worker.problem for name, worker in workers.items()}

@@ -23,7 +23,7 @@ from service.storage.errors import (
     UnstorableDiagnosisError,
 )
 from service.storage.models import DiagnosisRow, JobRow, JobRunnerRow, RecordingRequestRow, RecordingRow
-from service.storage.records import ClaimedJob, Cursor, DiagnosisEntry, Job, JobResult, Page
+from service.storage.records import ClaimedJob, Cursor, DiagnosisEntry, Job, JobResult, Page, RecordLength
 from service.storage.records.actors import SERVICE, Actor
 from service.storage.repository.audit.entries import note_change
 from service.storage.repository.conditions.conditions import note_standstill
@@ -36,7 +36,7 @@ from service.storage.repository.recordings.recordings import new_job, require_ro
 from service.storage.repository.recordings.requests import diagnose_rows, fail_rows
 from service.storage.repository.relays.clocks import withdraw_clock
 from service.storage.repository.sessions import Order, Sessions, found, only, page_of, record_of
-from service.storage.states import JobPriority, JobState, RecordingState
+from service.storage.states import JobPriority, JobState, RecordingSource, RecordingState
 from service.storage.texts import storable
 from service.timing.backoff import Backoff
 
@@ -129,6 +129,7 @@ class JobRows(Sessions):
                 triggered_ns=triggered_ns,
                 announced_ns=recording.announced_ns,
                 is_repetition=row.priority == JobPriority.REPETITION,
+                is_joined=recording.source is RecordingSource.JOINED,
             )
 
     def release_job(self, job_id: str, *, runner: str) -> None:
@@ -154,6 +155,7 @@ class JobRows(Sessions):
         start: ExaminedStart | None = None,
         rotor: RotorFinding | None = None,
         supply: SupplyFigures | None = None,
+        length: RecordLength | None = None,
     ) -> bool:
         """Keep the result: diagnosis, observation, job, recording and requests in one transaction.
 
@@ -161,7 +163,7 @@ class JobRows(Sessions):
         tells of its motor's condition; None where it tells nothing.  left_out: why it does not count there,
         nor in trends, for people.  operation_remark: why the motor's parameters cannot be estimated from this
         start.  start: what a start shows; None of other records.  rotor, supply: what the record shows of
-        them; None where it shows nothing.
+        them; None where it shows nothing.  length: that of the record.
         Returns False, and keeps nothing, where the job is not the runner's any more.
         Raises NotFoundError, UnstorableDiagnosisError.
         """
@@ -183,6 +185,8 @@ class JobRows(Sessions):
             recording.recorded_ns = recorded_ns
             recording.operation = diagnosis.operation
             recording.operation_remark = None if operation_remark is None else storable(operation_remark)
+            if length is not None:
+                recording.duration_s, recording.pre_trigger_s = length.duration_s, length.pre_trigger_s
             withdraw_clock(recording)
             session.flush()
             diagnose_rows(session, recording.id, now_ns)

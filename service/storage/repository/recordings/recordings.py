@@ -85,10 +85,10 @@ class RecordingRows(Sessions):
                 if most_queued is not None:
                     require_room(session, motor, most_queued)
                 if relay is None or remote is None:
-                    row = _uploaded(session, motor, stored.name, now_ns)
+                    row = brought(session, motor, stored.name, RecordingSource.UPLOAD, now_ns)
                 else:
                     row = recording_to_fill(session, relay, motor, remote, now_ns)
-                _fill(session, row, stored, now_ns)
+                fill(session, row, stored, now_ns)
                 priority = JobPriority.UPLOAD if relay is None else JobPriority.RELAY_RECORD
                 session.add(new_job(row, method, model, priority, now_ns))
                 if relay is None:
@@ -206,11 +206,12 @@ def _of_the_same_waveform(
     return only(session, query.order_by(RecordingRow.announced_ns, RecordingRow.id))
 
 
-def _uploaded(session: Session, motor: str, name: str, now_ns: int) -> RecordingRow:
+def brought(session: Session, motor: str, name: str, source: RecordingSource, now_ns: int) -> RecordingRow:
+    """Add the row of a recording that comes from no relay, still without its files."""
     row = RecordingRow(
         id=str(uuid.uuid4()),
         motor=motor,
-        source=RecordingSource.UPLOAD,
+        source=source,
         name=name,
         size_bytes=0,
         state=RecordingState.ANNOUNCED,
@@ -221,7 +222,8 @@ def _uploaded(session: Session, motor: str, name: str, now_ns: int) -> Recording
     return row
 
 
-def _fill(session: Session, row: RecordingRow, stored: StoredRecording, now_ns: int) -> None:
+def fill(session: Session, row: RecordingRow, stored: StoredRecording, now_ns: int) -> None:
+    """Give a recording its files."""
     row.digest = stored.digest
     row.size_bytes = stored.size_bytes
     row.state = RecordingState.FETCHED

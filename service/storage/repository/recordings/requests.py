@@ -50,9 +50,11 @@ class RecordingRequestRows(Sessions):
         now_ns: int,
         idempotency_key: str | None = None,
         most_open: int | None = None,
+        seconds: float | None = None,
     ) -> RecordingRequest:
         """Request an event recording of a motor; the same key again gives the first one's request.
 
+        seconds: request a series of recordings that make up so much time; None for one of the usual length.
         most_open: so many requests of the motor may wait for their record.
 
         Raises NotFoundError, OutOfServiceError for a motor that left the plant, TooManyWaitingError.
@@ -67,14 +69,16 @@ class RecordingRequestRows(Sessions):
                 raise OutOfServiceError("motor", motor)
             if most_open is not None:
                 _require_room(session, where, most_open)
-            made = _request(session, where, RecordingRequestOrigin.REQUEST, idempotency_key, now_ns)
+            origin = RecordingRequestOrigin.REQUEST
+            made = _request(session, where, origin, idempotency_key, now_ns, seconds=seconds)
             note_change(
                 session,
                 by,
                 AuditAction.RECORDING_REQUESTED,
                 ("motor", motor),
                 now_ns=now_ns,
-                after={"request": made.id, "relay": where.ied},
+                after={"request": made.id, "relay": where.ied}
+                | ({} if seconds is None else {"seconds": seconds}),
             )
             return made
 
@@ -184,9 +188,12 @@ class RecordingRequestRows(Sessions):
             fail_row(row, reason, now_ns)
             return True
 
-    def mark_triggered(self, request_id: str, *, now_ns: int, gateway: str | None = None) -> RecordingRequest:
+    def mark_triggered(
+        self, request_id: str, *, now_ns: int, gateway: str | None = None, triggers: int | None = None
+    ) -> RecordingRequest:
         """Note that the gateway that holds the relay's lease is about to trigger it.
 
+        triggers: how often it will do so for a series.
         Raises NotFoundError, StateConflictError, LeaseLostError where that gateway does not hold it.
         """
         with self._write() as session:
@@ -195,6 +202,7 @@ class RecordingRequestRows(Sessions):
                 require_lease(session, row.ied, gateway)
             if _advances(row, {RecordingRequestState.REQUESTED}, RecordingRequestState.TRIGGERED):
                 row.triggered_ns = now_ns
+                row.triggers = triggers
             return recording_request(row)
 
     def mark_recorded(self, request_id: str, *, now_ns: int) -> RecordingRequest:
@@ -247,6 +255,7 @@ def _request(
     *,
     state: RecordingRequestState = RecordingRequestState.REQUESTED,
     reason: str | None = None,
+    seconds: float | None = None,
 ) -> RecordingRequest:
     row = RecordingRequestRow(
         id=str(uuid.uuid4()),
@@ -257,6 +266,7 @@ def _request(
         reason=reason,
         idempotency_key=key,
         requested_ns=now_ns,
+        seconds=seconds,
     )
     session.add(row)
     session.flush()

@@ -47,3 +47,16 @@ def test_a_motor_that_left_the_plant_is_refused(client: httpx.Client, repository
     assert client.post(POST, headers={"Idempotency-Key": "a"}).json() == before, "no new wish"
     assert repository.schedule_recording("PUMP-A1", due_ns=NOW_NS, now_ns=NOW_NS) is None
     assert len(client.get("/api/v1/event-reports").json()["items"]) == 1
+
+
+def test_a_series_is_asked_for_by_its_seconds(client: httpx.Client, repository: Repository) -> None:
+    report = client.post(POST, json={"seconds": 10}).json()
+    assert (report["seconds"], report["joined_recording_id"], report["joined_remark"]) == (10.0, None, None)
+    assert repository.recording_request(report["id"]).seconds == 10.0
+    assert client.post(POST).json()["seconds"] is None
+    assert client.post(POST, json={"seconds": None}).json()["seconds"] is None
+
+
+def test_a_series_that_no_relay_could_make_is_refused(client: httpx.Client) -> None:
+    for seconds in (0.5, 3600, "ten"):
+        assert client.post(POST, json={"seconds": seconds}).status_code == 422

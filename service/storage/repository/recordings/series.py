@@ -1,0 +1,120 @@
+"""Series of recordings that were asked for as one, and the recordings joined from them."""
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
+from core.units import NANOSECONDS_PER_DAY, NANOSECONDS_PER_SECOND
+from service.recording_store.store import StoredRecording
+from service.storage.models import MotorRow, RecordingRequestRow, RecordingRow
+from service.storage.records import Series
+from service.storage.repository.recordings.folders import discard_folder, require_folder
+from service.storage.repository.recordings.recordings import brought, fill, new_job, stored_before
+from service.storage.repository.recordings.requests import KIND
+from service.storage.repository.sessions import Sessions, found
+from service.storage.states import JobPriority, RecordingRequestState, RecordingSource
+from service.storage.texts import storable
+
+OLDEST_NS = NANOSECONDS_PER_DAY
+"""Nobody waits any longer for a series."""
+LOOKED_AT = 100
+"""Recordings among which one with a length is looked for."""
+BESIDE_NS = 2 * NANOSECONDS_PER_SECOND
+"""Records of a series have times within its length and so much more."""
+
+
+class SeriesRows(Sessions):
+    def series_to_join(self, *, now_ns: int) -> tuple[Series, ...]:
+        """Return the series whose first recording is diagnosed and that were not joined yet."""
+        query = select(RecordingRequestRow).where(
+            RecordingRequestRow.requested_ns >= now_ns - OLDEST_NS,
+            RecordingRequestRow.seconds.is_not(None),
+            RecordingRequestRow.state == RecordingRequestState.DIAGNOSED,
+            RecordingRequestRow.joined_recording_id.is_(None),
+            RecordingRequestRow.joined_remark.is_(None),
+        )
+        with self._read() as session:
+            requests = session.scalars(query.order_by(RecordingRequestRow.requested_ns)).all()
+            return tuple(one for request in requests if (one := _series(session, request)) is not None)
+
+    def add_joined(
+        self,
+        stored: StoredRecording,
+        series: Series,
+        parts: tuple[int, ...],
+        remark: str | None,
+        *,
+        now_ns: int,
+    ) -> str:
+        """Add what a series was joined to, queue its diagnosis, and return its id; asked again, the same.
+
+        parts: which recordings of the series it is made of.  remark: why it has no more of them.
+        Raises NotFoundError, FolderGoneError.
+        """
+        with self._write() as session:
+            found(session, MotorRow, series.motor, "motor", lock=True)
+            row = stored_before(session, series.motor, None, stored.name, stored)
+            if row is None:
+                require_folder(session, stored)
+                row = brought(session, series.motor, stored.name, RecordingSource.JOINED, now_ns)
+                row.parts = tuple(series.recording_ids[part] for part in parts)
+                fill(session, row, stored, now_ns)
+                session.add(new_job(row, DEFAULT_METHOD, DEFAULT_MODEL, JobPriority.UPLOAD, now_ns))
+            else:
+                discard_folder(session, stored.digest, now_ns)
+            request = found(session, RecordingRequestRow, series.request_id, KIND, lock=True)
+            request.joined_recording_id = row.id
+            request.joined_remark = None if remark is None else storable(remark)
+            return row.id
+
+    def leave_unjoined(self, series: Series, remark: str) -> None:
+        """Note why a series was not joined; its recordings stay as they are. Raises NotFoundError."""
+        with self._write() as session:
+            request = found(session, RecordingRequestRow, series.request_id, KIND, lock=True)
+            request.joined_remark = storable(remark)
+
+    def record_length(self, motor: str) -> tuple[float, float] | None:
+        """Return length and pre-trigger time [s] of a motor's latest record that its relay made by a trigger.
+
+        None where none was read yet.
+        """
+        query = (
+            select(RecordingRow.source, RecordingRow.duration_s, RecordingRow.pre_trigger_s)
+            .where(RecordingRow.motor == motor)
+            .order_by(RecordingRow.announced_ns.desc(), RecordingRow.id.desc())
+            .limit(LOOKED_AT)
+        )
+        with self._read() as session:
+            latest = session.execute(query).all()
+        for source, duration_s, before_s in latest:
+            if source is RecordingSource.RELAY and duration_s is not None and before_s is not None:
+                return duration_s, before_s
+        return None
+
+
+def _series(session: Session, request: RecordingRequestRow) -> Series | None:
+    """Return the recordings that a request has brought; None where its first one is gone."""
+    first = None if request.recording_id is None else session.get(RecordingRow, request.recording_id)
+    if first is None or first.recorded_ns is None or first.digest is None:
+        return None
+    length_ns = round((request.seconds or 0.0) * NANOSECONDS_PER_SECOND) + BESIDE_NS
+    query = (
+        select(RecordingRow)
+        .where(
+            RecordingRow.motor == request.motor,
+            RecordingRow.ied == request.ied,
+            RecordingRow.recorded_ns >= first.recorded_ns,
+            RecordingRow.recorded_ns <= first.recorded_ns + length_ns,
+            RecordingRow.digest.is_not(None),
+        )
+        .order_by(RecordingRow.recorded_ns, RecordingRow.id)
+    )
+    rows = session.scalars(query).all()
+    return Series(
+        request.id,
+        request.motor,
+        tuple(row.id for row in rows),
+        tuple(row.digest for row in rows if row.digest is not None),
+        tuple(row.recorded_ns for row in rows if row.recorded_ns is not None),
+        is_complete=len(rows) >= (request.triggers or 1),
+    )
