@@ -247,6 +247,7 @@ def _result(
         ParametersSource.COMMISSIONED,
         start_limits=plate.start_limits,
         wound_rotor=plate.wound_rotor,
+        thermal=plate.thermal,
     )
     return Commissioning(
         motor=motor,

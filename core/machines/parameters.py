@@ -272,6 +272,37 @@ class StartLimits:
 
 
 @dataclass(frozen=True, slots=True)
+class ThermalElement:
+    """Settings of the relay's thermal element (49), as they stand in the relay.
+
+    Parameters
+    ----------
+    service_factor : float
+        SF, over the full-load current.
+    locked_rotor_current : float
+        LRA, over the full-load current.
+    locked_rotor_hot_s : float
+        LRTHOT, time a hot motor bears with its rotor locked [s].
+    acceleration_factor : float, default 1.0
+        TD, of that time.
+    running_time_constant_s : float or None, optional
+        RTC [s]; None for the relay's "Auto".
+    standstill_time_constant_s : float or None, optional
+        Time constant while the motor stands [s]; None for three times that of running.
+    full_load_current_A : float or None, optional
+        FLA, rms, primary [A]; None for that of the motor's circuit.
+    """
+
+    service_factor: float
+    locked_rotor_current: float
+    locked_rotor_hot_s: float
+    acceleration_factor: float = 1.0
+    running_time_constant_s: float | None = None
+    standstill_time_constant_s: float | None = None
+    full_load_current_A: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class WoundRotor:
     """A rotor winding on slip rings, as its plate has it, and what is connected to the rings.
 
@@ -327,6 +358,8 @@ class Motor:
         What its starts may do to it.
     wound_rotor : WoundRotor or None, optional
         The rotor's winding; None of a motor with a cage.
+    thermal : ThermalElement or None, optional
+        Its relay's thermal element; None where the file does not tell it.
     """
 
     name: str
@@ -340,6 +373,7 @@ class Motor:
     tolerances: ParameterTolerances = field(default_factory=ParameterTolerances)
     start_limits: StartLimits = field(default_factory=StartLimits)
     wound_rotor: WoundRotor | None = None
+    thermal: ThermalElement | None = None
 
     @property
     def kind(self) -> MachineKind:

@@ -3,7 +3,9 @@
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
+from core.thermal import relay_model
 from core.thermal.course import CurrentStep
+from core.thermal.relay_model import RelaySettings
 from core.thermal.two_bodies import Rises, TwoBodies, after
 
 RATED = 1.0
@@ -44,6 +46,28 @@ def bounded_rises(steps: Iterable[CurrentStep | float], motor: TwoBodies) -> Bou
     return BoundedRises(
         low=after(Rises(), _with(course, 0.0), motor), high=after(hottest, _with(course, RATED), motor)
     )
+
+
+def bounded_capacity(steps: Iterable[CurrentStep | float], settings: RelaySettings) -> tuple[float, float]:
+    """Return between which bounds the thermal capacity lies that a relay's element has used.
+
+    Parameters
+    ----------
+    steps : iterable of CurrentStep or float
+        Currents in their order; a number is a time of which nothing is known [s].
+    settings : RelaySettings
+        Settings of the element.
+
+    Returns
+    -------
+    tuple of float
+        As if the motor had stood, and as if it had run at full load, whenever nothing was known; at 1 the
+        relay trips.
+    """
+    course = list(steps)
+    low = relay_model.after(relay_model.cold(settings), _with(course, 0.0), settings)
+    high = relay_model.after(relay_model.warm(settings), _with(course, RATED), settings)
+    return low.thermal_capacity_used, high.thermal_capacity_used
 
 
 def _with(steps: Iterable[CurrentStep | float], current: float) -> Iterator[CurrentStep]:

@@ -19,6 +19,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from math import exp, isfinite, log
 
+from core.machines.parameters import ThermalElement
 from core.thermal.course import CurrentStep
 
 STARTING, STARTED = 2.5, 2.4
@@ -140,6 +141,29 @@ class RelayState:
         return self.heat / self.trip_value
 
 
+def settings_of(element: ThermalElement) -> RelaySettings:
+    """Return the settings of a thermal element as a motor's file has them.
+
+    Parameters
+    ----------
+    element : ThermalElement
+        The element.
+
+    Returns
+    -------
+    RelaySettings
+        Its settings.
+    """
+    return RelaySettings(
+        element.service_factor,
+        element.locked_rotor_current,
+        element.locked_rotor_hot_s,
+        element.acceleration_factor,
+        element.running_time_constant_s,
+        element.standstill_time_constant_s,
+    )
+
+
 def cold(settings: RelaySettings) -> RelayState:
     """Return the state of a motor at ambient temperature.
 
@@ -154,6 +178,22 @@ def cold(settings: RelaySettings) -> RelayState:
         The state.
     """
     return RelayState(0.0, settings.stator_trip_value, starting=False)
+
+
+def warm(settings: RelaySettings) -> RelayState:
+    """Return the state of a motor that has run at full-load current for long.
+
+    Parameters
+    ----------
+    settings : RelaySettings
+        Settings of the element.
+
+    Returns
+    -------
+    RelayState
+        The state.
+    """
+    return RelayState(settings.resistance, settings.stator_trip_value, starting=False)
 
 
 def after(state: RelayState, steps: Iterable[CurrentStep], settings: RelaySettings) -> RelayState:

@@ -41,6 +41,9 @@ def _facts(load: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         "winding",
         f"{_kelvin(thermal['winding_rise_K'])} above ambient, of a usual motor with such currents",
     )
+    used = thermal["relay_capacity_used"]
+    if used is not None:
+        yield "relay's element 49", f"{100 * used[0]:.0f} to {100 * used[1]:.0f} % of what trips it"
     by_resistance = thermal["from_resistance_K_ci95"]
     if by_resistance is None:
         yield "by resistance", "; ".join(thermal["reasons"])

@@ -8,11 +8,12 @@ from core.load.course import LoadPoint, held_ns
 from core.load.limits import DatedValue, HoursBeyond, hours_beyond
 from core.load.metered import Metered, load_point
 from core.load.profile import LoadProfile, load_profile
-from core.machines.parameters import Motor
+from core.machines.parameters import Motor, ThermalElement
 from core.supply.definitions import nema_unbalance
-from core.thermal.bounded_rises import BoundedRises, bounded_rises
+from core.thermal.bounded_rises import BoundedRises, bounded_capacity, bounded_rises
 from core.thermal.course import CurrentStep
 from core.thermal.full_load import full_load_current_A
+from core.thermal.relay_model import settings_of
 from core.thermal.two_bodies import TwoBodies
 from core.thermal.winding_temperature import WindingTemperature, winding_temperature
 from core.units import NANOSECONDS_PER_DAY, NANOSECONDS_PER_SECOND
@@ -65,7 +66,8 @@ class MotorLoad:
     """How a motor was loaded.
 
     step: of the means that it is told by.  rises: of winding and frame at the end; None where nothing was
-    metered.  winding: None without two records of the same sensors.
+    metered.  winding: None without two records of the same sensors.  capacity_used: of the relay's thermal
+    element, between bounds; None where the motors file does not tell its settings, or nothing was metered.
     """
 
     profile: LoadProfile
@@ -73,10 +75,16 @@ class MotorLoad:
     limits: Sequence[LimitHours]
     rises: BoundedRises | None
     winding: WindingRise | None
+    capacity_used: tuple[float, float] | None = None
 
 
-def motor_load(repository: Repository, motor: Motor, *, days: int, now_ns: int) -> MotorLoad:
-    """Return how a motor was loaded in the last days. Raises NotFoundError."""
+def motor_load(
+    repository: Repository, motor: Motor, *, days: int, now_ns: int, thermal: ThermalElement | None = None
+) -> MotorLoad:
+    """Return how a motor was loaded in the last days. Raises NotFoundError.
+
+    thermal: its relay's thermal element, as the motors file tells it.
+    """
     step = AveragingStep.MINUTE if days <= MINUTES_UP_TO_DAYS else AveragingStep.QUARTER_HOUR
     from_ns = now_ns - days * NANOSECONDS_PER_DAY
     metered = repository.metered(motor.name, step, from_ns=from_ns, to_ns=now_ns)
@@ -90,6 +98,7 @@ def motor_load(repository: Repository, motor: Motor, *, days: int, now_ns: int) 
         limits=[_beyond(one, known, motor, longest_ns, now_ns) for one in LIMITS],
         rises=_rises(repository, motor, now_ns),
         winding=_winding(repository, motor),
+        capacity_used=None if thermal is None else _capacity_used(repository, motor, thermal, now_ns),
     )
 
 
@@ -133,14 +142,31 @@ def _rises(repository: Repository, motor: Motor, now_ns: int) -> BoundedRises | 
     metered = repository.metered(motor.name, step, from_ns=now_ns - REMEMBERED_NS, to_ns=now_ns)
     if not metered:
         return None
-    return bounded_rises(_currents(metered, motor, step.value * NANOSECONDS_PER_SECOND, now_ns), USUAL_BODIES)
+    longest_ns = step.value * NANOSECONDS_PER_SECOND
+    full_A = full_load_current_A(motor)
+    return bounded_rises(_currents(metered, motor, full_A, longest_ns, now_ns), USUAL_BODIES)
+
+
+def _capacity_used(
+    repository: Repository, motor: Motor, thermal: ThermalElement, now_ns: int
+) -> tuple[float, float] | None:
+    """Return the capacity that the relay's element has used now, by means of minutes.
+
+    A start of some seconds is not in these as it was: the element's rotor has cooled down an hour later.
+    """
+    step = AveragingStep.MINUTE
+    metered = repository.metered(motor.name, step, from_ns=now_ns - REMEMBERED_NS, to_ns=now_ns)
+    if not metered:
+        return None
+    longest_ns = step.value * NANOSECONDS_PER_SECOND
+    full_A = thermal.full_load_current_A or full_load_current_A(motor)
+    return bounded_capacity(_currents(metered, motor, full_A, longest_ns, now_ns), settings_of(thermal))
 
 
 def _currents(
-    metered: Sequence[Metered], motor: Motor, longest_ns: int, until_ns: int
+    metered: Sequence[Metered], motor: Motor, full_A: float, longest_ns: int, until_ns: int
 ) -> Iterator[CurrentStep | float]:
     """Yield the currents over full load, and between them the time of which nothing is known."""
-    full_A = full_load_current_A(motor)
     times = [one.time_ns for one in metered]
     holds = held_ns(times, longest_ns=longest_ns, until_ns=until_ns)
     for one, end_ns, held in zip(metered, (*times[1:], until_ns), holds, strict=True):

@@ -9,6 +9,7 @@ from pathlib import Path
 from core.error_words import nearest
 from core.machines import plausibility
 from core.machines.motor_file.error import MotorFileError
+from core.machines.motor_file.heating import start_limits, thermal_element
 from core.machines.motor_file.table import MotorTable
 from core.machines.motor_file.unit_slips import likely_slip
 from core.machines.parameters import (
@@ -20,6 +21,7 @@ from core.machines.parameters import (
     Nameplate,
     ParametersSource,
     StartLimits,
+    ThermalElement,
     Transformers,
     WoundRotor,
 )
@@ -35,6 +37,7 @@ TABLES = (
     "limits",
     "sensors",
     "transformers",
+    "thermal",
     "rotor_circuit",
 )
 OF_A_WOUND_ROTOR = ("rotor_voltage_V", "rotor_current_A", "rated_speed_rpm")
@@ -75,6 +78,8 @@ class Plate:
         What its starts may do to the motor.
     wound_rotor : WoundRotor or None, optional
         The rotor's winding; None of a motor with a cage.
+    thermal : ThermalElement or None, optional
+        Its relay's thermal element.
     """
 
     name: str
@@ -88,6 +93,7 @@ class Plate:
     intervals: dict[str, tuple[float, float]] = field(default_factory=dict)
     start_limits: StartLimits = field(default_factory=StartLimits)
     wound_rotor: WoundRotor | None = None
+    thermal: ThermalElement | None = None
 
     @property
     def motor(self) -> Motor:
@@ -105,6 +111,7 @@ class Plate:
             tolerances_of(parameters, self.source, self.intervals),
             self.start_limits,
             self.wound_rotor,
+            self.thermal,
         )
 
 
@@ -273,6 +280,7 @@ def _plate(
     channels = MotorTable(table, "channels", source, errors, optional=True)
     sensors = MotorTable(table, "sensors", source, errors, optional=True)
     transformers = MotorTable(table, "transformers", source, errors, optional=True)
+    thermal = MotorTable(table, "thermal", source, errors, optional=True)
     rated = _nameplate(nameplate)
     # The intervals say how far the parameters may be off; the models use the values alone.
     ends = {name: found for name in PARAMETERS if (found := intervals.interval(name)) is not None}
@@ -300,10 +308,12 @@ def _plate(
         ),
         source=_source(machine, has_intervals=bool(ends)),
         intervals=ends,
-        start_limits=_start_limits(limits, rated),
+        start_limits=start_limits(limits, rated),
         wound_rotor=_wound_rotor(nameplate, rotor_circuit, rated),
+        thermal=thermal_element(thermal, rated),
     )
-    for section in (nameplate, machine, intervals, rotor_circuit, limits, channels, sensors, transformers):
+    optional = (intervals, rotor_circuit, limits, channels, sensors, transformers, thermal)
+    for section in (nameplate, machine, *optional):
         if section is not None:
             section.end()
     return plate
@@ -351,21 +361,6 @@ def _wound_rotor(plate: MotorTable, circuit: MotorTable, rated: Nameplate) -> Wo
     most_ohm = plausibility.EXTERNAL_RESISTANCE * rotor.standstill_impedance_ohm
     return replace(
         rotor, external_resistance_ohm=circuit.span("external_resistance_ohm", most_ohm, "ohm a phase")
-    )
-
-
-def _start_limits(table: MotorTable, nameplate: Nameplate) -> StartLimits:
-    base_A = nameplate.rated_power_W / (sqrt(3.0) * nameplate.rated_voltage_V)
-    least, most = plausibility.LOCKED_ROTOR_CURRENT
-    return StartLimits(
-        locked_rotor_current_A=table.optional_number(
-            "locked_rotor_current_A", (least * base_A, most * base_A), unit="A"
-        ),
-        locked_rotor_hot_s=table.optional_number("locked_rotor_hot_s", plausibility.LOCKED_ROTOR_S, unit="s"),
-        locked_rotor_cold_s=table.optional_number(
-            "locked_rotor_cold_s", plausibility.LOCKED_ROTOR_S, unit="s"
-        ),
-        starts_per_hour=table.optional_count("starts_per_hour", plausibility.MOST_STARTS_PER_HOUR),
     )
 
 

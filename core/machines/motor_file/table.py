@@ -58,6 +58,7 @@ class MotorTable:
             found = NOTHING if values is None else type(values).__name__
             errors.append(MotorFileError(source, f"[{name}]", expected="a table", found=found))
         self.is_there = isinstance(values, Mapping)
+        self.is_empty = not self._values
 
     def number(
         self,

@@ -120,6 +120,9 @@ def motor_text(
     if ratios:
         lines += ["", "[transformers]"]
         lines += [f"{name} = {_number(ratio)}" for name, ratio in ratios.items()]
+    if motor.thermal is not None:
+        settings = {name: value for name, value in asdict(motor.thermal).items() if value is not None}
+        lines += ["", "[thermal]", *(f"{name} = {_number(value)}" for name, value in settings.items())]
     return "\n".join(lines) + "\n"
 
 

@@ -34,4 +34,8 @@ def get_load_profile(
     if not versions:
         return LoadProfile()
     motor = motor_known(name, versions[-1].document)
-    return load_document(motor_load(context.repository, motor, days=days, now_ns=time.time_ns()))
+    here = context.motors.get(name)
+    thermal = None if here is None else here.thermal
+    return load_document(
+        motor_load(context.repository, motor, days=days, now_ns=time.time_ns(), thermal=thermal)
+    )

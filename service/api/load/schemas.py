@@ -38,7 +38,9 @@ class ThermalState(Document):
 
     winding_rise_K, frame_rise_K: as if the motor had stood, and had run at rated current, where nothing is
     known. from_resistance_K: how much hotter the winding is than in the record of reference_time, by its
-    resistance (..._ci95: 95 % interval); reasons: why that is not told.
+    resistance (..._ci95: 95 % interval); reasons: why that is not told. relay_capacity_used: of the relay's
+    thermal element, over the value at which it trips, between the same bounds; null where the motors file has
+    no [thermal].
     """
 
     winding_rise_K: Interval | None
@@ -48,6 +50,7 @@ class ThermalState(Document):
     record_time: Time | None
     reference_time: Time | None
     reasons: Listed[str]
+    relay_capacity_used: Interval | None
 
 
 class LoadProfile(Document):
@@ -111,4 +114,5 @@ def _thermal(load: MotorLoad) -> dict[str, object]:
         "record_time": None if winding is None else winding.time_ns,
         "reference_time": None if winding is None else winding.reference_ns,
         "reasons": ("there are no two records of the same sensors",) if found is None else found.reasons,
+        "relay_capacity_used": load.capacity_used,
     }

@@ -6,6 +6,7 @@ from typing import Final
 from markupsafe import Markup
 
 from core.load.profile import CLASS_WIDTH
+from core.machines.parameters import ThermalElement
 from service.condition.metered_load import MotorLoad, motor_load
 from service.condition.motor_data import motor_known
 from service.pictures.load_profile import LoadShare, load_profile_picture
@@ -26,13 +27,20 @@ class LoadPage:
 
 
 def load_page(
-    repository: Repository, motor: str, *, days: int, now_ns: int, look: Look = PAGE
+    repository: Repository,
+    motor: str,
+    *,
+    days: int,
+    now_ns: int,
+    thermal: ThermalElement | None = None,
+    look: Look = PAGE,
 ) -> LoadPage | None:
     """Read what the page shows; None before a service has read the motors file. Raises NotFoundError."""
     versions = repository.motor_versions(motor)
     if not versions:
         return None
-    load = motor_load(repository, motor_known(motor, versions[-1].document), days=days, now_ns=now_ns)
+    known = motor_known(motor, versions[-1].document)
+    load = motor_load(repository, known, days=days, now_ns=now_ns, thermal=thermal)
     shares = [LoadShare(one.from_level + CLASS_WIDTH / 2.0, one.hours) for one in load.profile.classes]
     picture = load_profile_picture(motor, shares, of_what="of the running time", look=look)
     return LoadPage(load, markup(picture))

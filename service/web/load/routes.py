@@ -21,5 +21,8 @@ def show_load(
 ) -> Response:
     """Show how a motor was loaded in the last days, and how hot that makes it."""
     view.context.require_motor(name)
-    found = load_page(view.context.repository, name, days=days, now_ns=view.now_ns)
+    context = view.context
+    here = context.motors.get(name)
+    thermal = None if here is None else here.thermal
+    found = load_page(context.repository, name, days=days, now_ns=view.now_ns, thermal=thermal)
     return view.page("load/page.html", title=f"{name}: load", motor=name, days=days, spans=SPANS, found=found)

@@ -1,9 +1,14 @@
 """The load profile over REST, of a day that is counted by hand."""
 
+import time
+from dataclasses import replace
+
 import httpx
 import pytest
 
-from core.machines.parameters import Connection
+from core.machines.parameters import Connection, ThermalElement
+from service.api.load.schemas import load_document
+from service.condition.metered_load import motor_load
 from service.storage import Repository
 from testing.machines.motors import REFERENCE
 from testing.service.metered_days import POWER_W, meter_a_day
@@ -71,3 +76,19 @@ def test_a_motor_of_which_nothing_is_metered(client: httpx.Client, repository: R
     assert minutes["step_s"] == 60
     assert client.get(URL, params={"days": 91}).status_code == 422
     assert client.get("/api/v1/motors/NOPE/load-profile").status_code == 404
+
+
+def test_the_relays_thermal_element_by_the_settings_of_the_motors_file(
+    client: httpx.Client, repository: Repository
+) -> None:
+    meter_a_day(repository)
+    assert client.get(URL).json()["thermal"]["relay_capacity_used"] is None
+
+    element = ThermalElement(1.15, 6.0, 12.0, running_time_constant_s=1800.0)
+    motor = replace(REFERENCE, name="PUMP-A1")
+    found = motor_load(repository, motor, days=1, now_ns=time.time_ns(), thermal=element)
+    document = load_document(found).thermal
+    assert document is not None
+    assert document.relay_capacity_used is not None
+    low, high = document.relay_capacity_used
+    assert 0.05 < low < high < 1.0
