@@ -6,7 +6,7 @@ from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 from benchmarks.reporting import Section, write_sections
-from benchmarks.wound_rotor import false_alarms, stator, winding
+from benchmarks.wound_rotor import false_alarms, rings, stator, winding
 
 PAGE = Path("docs/evidence/other-machines.md")
 PREAMBLE = """# Other machines: the wound rotor
@@ -21,6 +21,7 @@ measurement is in [adding a machine](../explanation/adding-a-machine.md#what-a-r
 SUBJECTS = {
     "stator": stator.sections,
     "winding": winding.sections,
+    "rings": rings.sections,
     "false-alarms": false_alarms.sections,
 }
 
