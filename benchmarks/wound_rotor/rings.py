@@ -22,10 +22,11 @@ def sections(pool: Executor, *, quick: bool) -> list[Section]:
         for unbalance in UNBALANCES
     ]
     lines = [
-        f"At {LOAD_LEVEL:.0%} load. The forward-turning current does not depend on the resistance at all. The "
-        "backward-turning one does where the supply is unbalanced: what all the range of the resistance (0 to "
-        f"{LARGEST_SHARE:.0%} of that of rated torque at standstill) makes of it, beside the standard deviation "
-        "that channels of the usual class (1 %, 25 us) have. Both are shares of the forward-turning current.",
+        f"At {LOAD_LEVEL:.0%} load. The forward-turning current does not depend on the resistance at all. "
+        "The backward-turning one does where the supply is unbalanced: what all the range of the resistance "
+        f"(0 to {LARGEST_SHARE:.0%} of that of rated torque at standstill) makes of it, beside the standard "
+        "deviation that channels of the usual class (1 %, 25 us) have. Both are shares of the "
+        "forward-turning current.",
         "",
         *table(["motor", "unbalance of the supply", "all the range", "channels"], rows),
     ]

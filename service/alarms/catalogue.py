@@ -53,11 +53,11 @@ CATALOGUE: Final[Mapping[AlarmKind, AlarmDescription]] = {
     ),
     AlarmKind.ROTOR_FAULT: AlarmDescription(
         AlarmPriority.HIGH,
-        "Two of the latest three records that tell of the rotor show a cage as uneven as broken bars, or a "
-        "broken end ring, make it.",
+        "Two of the latest three records that tell of the rotor show one as uneven as broken bars, a broken "
+        "end ring, or a bad contact of a wound rotor make it.",
         "Broken bars overload their neighbours at each start, and pieces of them may damage the winding.",
-        "Have the cage inspected at the next planned stop, start the motor as seldom as possible until then, "
-        "and compare its starts with earlier ones.",
+        "Have the cage inspected at the next planned stop (of a wound rotor brushes and rings), start the "
+        "motor as seldom as possible until then, and compare its starts with earlier ones.",
         "fewer than two of the latest three records show it; while the rotor is still to be watched, "
         "`rotor-watch` takes its place. Also when the motor leaves the plant",
     ),

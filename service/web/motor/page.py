@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from core.diagnosis.verdict import Verdict
+from core.machines.parameters import MachineKind
 from core.units import NANOSECONDS_PER_DAY
 from service.api.conditions.documents import condition_document
 from service.api.conditions.schemas import Condition
@@ -88,7 +89,7 @@ def motor_page(context: ApiContext, name: str, span: TrendSpan, now_ns: int) -> 
             health, condition, now_ns, oldest_ns, None if known is None else known.motor.limits.fault_level
         ),
         trend=_trend(repository, name, span, condition, known, now_ns),
-        rotor=rotor_section(repository, name),
+        rotor=rotor_section(repository, name, MachineKind.CAGE if known is None else known.motor.kind),
         supply=supply_section(repository, name),
         parameters=parameters_section(repository, name),
         known=known,

@@ -2,8 +2,9 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, NamedTuple
 
+from core.machines.parameters import MachineKind
 from core.rotor.finding import RotorState
 from core.rotor.judgement import FAULT_DB, WATCH_DB
 from core.rotor.trend import RotorCondition
@@ -22,6 +23,19 @@ LOWEST_DB: Final = -90.0
 """What lies lower is drawn here: it is noise."""
 DIGITS: Final = 1
 TONES: Final = (Tone.A, Tone.B, Tone.C, Tone.MODEL, Tone.ACCENT)
+
+
+class RotorPart(NamedTuple):
+    """What the page calls a rotor, and its fault."""
+
+    name: str
+    fault: str
+
+
+PARTS: Final = {
+    MachineKind.CAGE: RotorPart("cage", "broken bars or a broken end ring"),
+    MachineKind.WOUND_ROTOR: RotorPart("rotor winding", "a bad contact of a brush or a slip ring"),
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,8 +58,8 @@ class RotorSection:
     silent: int
 
 
-def rotor_section(repository: Repository, motor: str) -> RotorSection:
-    """Read what the page says of a motor's rotor. Raises NotFoundError."""
+def rotor_section(repository: Repository, motor: str, kind: MachineKind) -> RotorSection:
+    """Read what the page says of a motor's rotor, a cage or a winding. Raises NotFoundError."""
     entries = repository.latest_rotor_findings(motor, limit=MOST_RECORDS)
     telling = [one for one in entries if one.finding.severity_dB is not None]
     latest = telling[-1] if telling else (entries[-1] if entries else None)
@@ -54,7 +68,7 @@ def rotor_section(repository: Repository, motor: str) -> RotorSection:
         latest=latest,
         condition=condition,
         words=STATES[condition.state],
-        sentence=_sentence(condition) if entries else "No record tells of the rotor yet.",
+        sentence=_sentence(condition, PARTS[kind]) if entries else "No record tells of the rotor yet.",
         advice=rotor_advice(condition.state),
         sidebands=None if latest is None else sideband_words(latest.finding),
         start=start_agreement(repository, motor),
@@ -65,14 +79,14 @@ def rotor_section(repository: Repository, motor: str) -> RotorSection:
     )
 
 
-def _sentence(condition: RotorCondition) -> str:
+def _sentence(condition: RotorCondition, part: RotorPart) -> str:
     if condition.severity_dB is None:
-        return "The records cannot tell whether the cage is sound."
+        return f"The records cannot tell whether the {part.name} is sound."
     level = decibels(condition.severity_dB, condition.severity_dB_ci95)
     says = {
-        RotorState.HEALTHY: "The cage is even: its asymmetry is",
-        RotorState.WATCH: "The cage may be uneven: its asymmetry is",
-        RotorState.FAULT: "The cage is uneven, as with broken bars or a broken end ring: its asymmetry is",
+        RotorState.HEALTHY: f"The {part.name} is even: its asymmetry is",
+        RotorState.WATCH: f"The {part.name} may be uneven: its asymmetry is",
+        RotorState.FAULT: f"The {part.name} is uneven, as with {part.fault}: its asymmetry is",
     }[condition.state]
     changed = ""
     if condition.change_dB is not None:
