@@ -64,7 +64,7 @@ def create_app(
         redoc_url=None,
     )
     app.state.context = context
-    api = APIRouter(prefix=PREFIX, dependencies=[Depends(refuse_unknown_parameters)])
+    api = APIRouter(dependencies=[Depends(refuse_unknown_parameters)])
     for part in (
         motors,
         conditions,
@@ -95,7 +95,7 @@ def create_app(
         api.include_router(part.router)
     if context.settings.access.oidc is not None:
         _add_sign_on(api, context.settings.access.oidc)
-    app.include_router(api)
+    app.include_router(api, prefix=PREFIX)
     app.include_router(probes.router)
     for page in pages:
         app.include_router(page, include_in_schema=False)
