@@ -1,0 +1,1 @@
+"""Parameters followed over records: drifts found, missed and falsely told, and whether intervals hold."""
