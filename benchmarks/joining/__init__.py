@@ -1,0 +1,1 @@
+"""How well records that overlap are joined, and what a joined one tells of the rotor."""
