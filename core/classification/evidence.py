@@ -53,6 +53,27 @@ class Block:
         return self.log_likelihood[own] * min(1.0, MOST_NATS / max(most, MOST_NATS))
 
 
+def only(cause: Cause, log_ratio: float, figure: str) -> Block:
+    """Return the block of figures that speak of one cause alone.
+
+    Parameters
+    ----------
+    cause : Cause
+        The cause.
+    log_ratio : float
+        Log of their likelihood with the cause over that without it [nats].
+    figure : str
+        What was measured, in words.
+
+    Returns
+    -------
+    Block
+        The block.
+    """
+    causes = frozenset({cause})
+    return Block(causes, {causes: log_ratio}, {cause: figure})
+
+
 class Verdict(NamedTuple):
     """What another part says of one cause, by which it raises alarms.
 

@@ -6,7 +6,7 @@ from typing import Final
 from core.classification.asymmetry import asymmetry_block
 from core.classification.causes import PRIORS, Cause
 from core.classification.classification import Classification, classify
-from core.classification.evidence import Block, Evidence, Verdict
+from core.classification.evidence import Block, Evidence, Verdict, only
 from core.classification.swings import eccentricity_block, pulsation_block, rotor_block
 from core.condition.errors import ObservationError
 from core.condition.measuring.observing import Examined
@@ -69,7 +69,7 @@ def evidence_of(examined: Examined, motor: Motor) -> Evidence:
     """
     rotor, eccentricity, pulsation = examined.rotor, examined.eccentricity, examined.pulsation
     blocks: list[Block | None] = [
-        rotor_block(rotor),
+        rotor_block(rotor.severity_dB, rotor.severity_dB_ci95),
         eccentricity_block(eccentricity),
         pulsation_block(rotor, eccentricity, pulsation),
     ]
@@ -105,8 +105,7 @@ def _refused(diagnosis: Diagnosis) -> Block | None:
     cause = None if failed is None else CHECKS.get(failed.name)
     if failed is None or cause is None:
         return None
-    only = frozenset({cause})
-    return Block(only, {only: REFUSED}, {cause: failed.message})
+    return only(cause, REFUSED, failed.message)
 
 
 def _why_no_phasors(diagnosis: Diagnosis) -> str:

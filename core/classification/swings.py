@@ -11,7 +11,7 @@ from typing import Final
 from scipy.special import logsumexp
 
 from core.classification.causes import Cause
-from core.classification.evidence import Block
+from core.classification.evidence import Block, only
 from core.rotor.eccentricity import EccentricityFinding
 from core.rotor.finding import RotorFinding, RotorState
 from core.rotor.judgement import LOAD_OSCILLATION
@@ -26,33 +26,33 @@ STEADY_LOAD, SWINGING_LOADS = 0.004, (0.03, 0.1)
 """Swing of a steady load's torque over the rated one, rms, and of loads that pulsate."""
 TORQUE_NOISE: Final = 0.002
 """Noise of the torque at twice the slip, rms, over rated torque; the rotor's finding does not tell it."""
-SHARE_OF_GAP: Final = 0.1
-"""Relative error of a swing once a turn, by what an uneven gap makes of it."""
 
 
-def rotor_block(finding: RotorFinding) -> Block | None:
+def rotor_block(severity_dB: float | None, ci95: tuple[float, float] | None) -> Block | None:
     """Return the evidence of the rotor's asymmetry.
 
     Parameters
     ----------
-    finding : RotorFinding
-        What a record tells of the cage.
+    severity_dB : float or None
+        Asymmetry of the rotor's resistance, of a record or of a motor's latest ones [dB].
+    ci95 : tuple of float or None
+        Its 95 % interval [dB].
 
     Returns
     -------
     Block or None
-        The evidence; None where the record cannot tell.
+        The evidence; None where nothing can be told.
     """
-    if finding.severity_dB is None or finding.severity_dB_ci95 is None:
+    if severity_dB is None or ci95 is None:
         return None
-    value = _ratio(finding.severity_dB)
-    low, high = map(_ratio, finding.severity_dB_ci95)
+    value = _ratio(severity_dB)
+    low, high = map(_ratio, ci95)
     # The interval is cut off at the lowest figure that is written.
     deviation = max(high - low, 2.0 * (high - value)) / (2.0 * 1.96)
-    return _block(
+    return only(
         Cause.ROTOR,
         _log_ratio(value, deviation, EVEN_CAGE, UNEVEN_CAGES),
-        f"asymmetry of the rotor's resistance {finding.severity_dB:.1f} dB",
+        f"asymmetry of the rotor's resistance {severity_dB:.1f} dB",
     )
 
 
@@ -72,7 +72,7 @@ def eccentricity_block(finding: EccentricityFinding) -> Block | None:
     value, deviation = finding.permeance_ripple, finding.standard_deviation
     if value is None or deviation is None:
         return None
-    return _block(
+    return only(
         Cause.ECCENTRICITY,
         _log_ratio(value, deviation, EVEN_GAP, UNEVEN_GAPS),
         f"the air gap's permeance ripples by {value:.1%} once a turn (+-{1.96 * deviation:.1%})",
@@ -104,9 +104,8 @@ def pulsation_block(
         is_of_load = any(reason.startswith(f"{LOAD_OSCILLATION}:") for reason in rotor.reasons)
         swing = _ratio(rotor.load_oscillation_dB) if is_of_load else 0.0
         swings.append((swing, TORQUE_NOISE, "at twice the slip"))
-    if eccentricity.load_torque is not None:
-        swing = eccentricity.load_torque
-        swings.append((swing, SHARE_OF_GAP * swing, "once a turn"))
+    if eccentricity.load_torque is not None and eccentricity.load_torque_deviation is not None:
+        swings.append((eccentricity.load_torque, eccentricity.load_torque_deviation, "once a turn"))
     if pulsation.load_torque is not None and pulsation.noise is not None:
         where = f"at {pulsation.frequency_hz:.2f} Hz"
         swings.append((pulsation.load_torque, pulsation.noise, where))
@@ -114,16 +113,11 @@ def pulsation_block(
         return None
     ratios = [_log_ratio(swing, noise, STEADY_LOAD, SWINGING_LOADS) for swing, noise, _ in swings]
     swing, _, where = swings[ratios.index(max(ratios))]
-    return _block(
+    return only(
         Cause.PULSATION,
         float(logsumexp(ratios)) - log(len(ratios)),
         f"the load's torque swings by {swing:.1%} of the rated one {where}",
     )
-
-
-def _block(cause: Cause, log_ratio: float, figure: str) -> Block:
-    only = frozenset({cause})
-    return Block(only, {only: log_ratio}, {cause: figure})
 
 
 def _log_ratio(value: float, deviation: float, sound: float, uneven: Sequence[float]) -> float:

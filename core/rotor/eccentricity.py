@@ -53,6 +53,8 @@ class EccentricityFinding:
         Current at f - f_r and f + f_r as measured, over the fundamental [dB].
     load_torque : float or None
         Torque of the load that swings once a turn, its amplitude over rated torque.
+    load_torque_deviation : float or None
+        Its standard deviation, over rated torque.
     rotation_frequency_hz : float or None
         f_r, at which the lines stand [Hz].
     reasons : tuple of str
@@ -65,6 +67,7 @@ class EccentricityFinding:
     lower_sideband_dB: float | None
     upper_sideband_dB: float | None
     load_torque: float | None
+    load_torque_deviation: float | None
     rotation_frequency_hz: float | None
     reasons: tuple[str, ...] = ()
 
@@ -82,7 +85,7 @@ class EccentricityFinding:
         EccentricityFinding
             The finding.
         """
-        return cls(None, None, None, None, None, None, None, (reason,))
+        return cls(None, None, None, None, None, None, None, None, (reason,))
 
     def as_dict(self) -> dict[str, object]:
         """Return the part `eccentricity` of the document that `mcc diagnose --json` prints.
@@ -142,14 +145,16 @@ class _Record:
     def finding(self, line: Lines, point: RunningPoint, *, chances: float) -> EccentricityFinding:
         """Return what the lines mean, beside noise and errors of the parameters."""
         found = self._meaning(line, self.kappa, point, self.motor)
-        value = complex(found.permeance[0])
+        value, torque = complex(found.permeance[0]), complex(found.load_torque[0])
         around = self._around()
         beside = self._meaning(fit_lines(self.baseband, self.angle, around), around, point, self.motor)
         noise = float(np.median(np.abs(beside.permeance) ** 2)) / log(2.0)
-        wrong = 0.0
+        torque_noise = float(np.median(np.abs(beside.load_torque) ** 2)) / log(2.0)
+        wrong, torque_wrong = 0.0, 0.0
         for motor, baseband, deviations in errors(self.baseband, self.motor):
             other = self._meaning(line, self.kappa, running_point(baseband, motor), motor)
             wrong = hypot(wrong, deviations * abs(complex(other.permeance[0]) - value))
+            torque_wrong = hypot(torque_wrong, deviations * abs(complex(other.load_torque[0]) - torque))
         deviation = hypot(sqrt(noise / 2.0), wrong)
         by_chance = sqrt(noise * log(chances / FALSE_ALARM))
         current = abs(point.current)
@@ -159,7 +164,8 @@ class _Record:
             detection_limit=hypot(by_chance, NORMAL_95 * wrong) + NINE_IN_TEN * deviation,
             lower_sideband_dB=decibels(float(abs(line.lower[0, 1])) / current),
             upper_sideband_dB=decibels(float(abs(line.upper[0, 1])) / current),
-            load_torque=float(abs(found.load_torque[0])),
+            load_torque=abs(torque),
+            load_torque_deviation=hypot(sqrt(torque_noise / 2.0), torque_wrong),
             rotation_frequency_hz=float(self._distance(self.kappa)[0]) / (2.0 * pi),
         )
 

@@ -98,5 +98,7 @@ def ripples(
         - i_lower.conj() * Psi_s
         - I_s.conjugate() * psi_s_upper
     )
+    # A gap that ripples with the shaft's angle pulls at it, too: i^2 / 2 dL/d(theta_m).
+    torque += 0.5j * L_m * abs(I_m) ** 2 * permeance
     inertia_torque = 2.0 * (machine.inertia_kgm2 / p) * 1j * distance * speed
     return Ripples(permeance, (torque - inertia_torque) / motor.nameplate.rated_torque_Nm)

@@ -1,0 +1,112 @@
+"""The answer of a motor, from a condition, a rotor and records that are given."""
+
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from core.classification.causes import Cause
+from core.classification.classification import Classification
+from core.classification.motor import MotorEvidence, RecordAnswer, classify_motor
+from core.condition.kinds import Kind, State
+from core.condition.verdict.condition import Condition, condition_of
+from core.rotor.finding import RotorState
+from core.rotor.trend import RotorCondition
+from core.starts.compared import ChangeState, StartCause, StartChanges
+from testing.machines.motors import MEDIUM
+
+HEALTHY = replace(condition_of(MEDIUM, None, 0), state=State.HEALTHY, kind=Kind.NONE)
+EVEN = RotorCondition(RotorState.HEALTHY, -70.0, (-74.0, -66.0), None, 0, (), ())
+UNEVEN = RotorCondition(RotorState.FAULT, -29.0, (-30.0, -28.0), 30.0, 0, (), ())
+QUIET = RecordAnswer(
+    {
+        Cause.PULSATION: -2.0,
+        Cause.ECCENTRICITY: -2.0,
+        Cause.SUPPLY: -1.5,
+        Cause.PARAMETERS: -1.5,
+        Cause.VOLTAGE_CHANNEL: -1.0,
+        Cause.CURRENT_CHANNEL: -1.0,
+    },
+    {},
+)
+LOADS = [0.6, 0.62, 0.58, 0.61, 0.6, 0.59, 0.63, 0.6, 0.61, 0.6, 0.62, 0.6]
+
+
+def _answer(condition: Condition = HEALTHY, **known: Any) -> Classification:
+    usual: dict[str, Any] = {"rotor": EVEN, "records": [QUIET] * 3, "load_levels": LOADS}
+    return classify_motor(MotorEvidence(condition, **(usual | known)))
+
+
+def _condition(kind: Kind, state: State = State.FAULT, *candidates: Kind) -> Condition:
+    return replace(HEALTHY, state=state, kind=kind, candidates=candidates, phase="b")
+
+
+def test_a_motor_with_nothing_unusual_is_healthy() -> None:
+    found = _answer()
+    assert found.is_told
+    assert found.words == "healthy"
+
+
+@pytest.mark.parametrize(
+    ("kind", "cause"),
+    [
+        (Kind.SHORTED_TURNS, Cause.SHORTED_TURNS),
+        (Kind.VOLTAGE_CHANNEL, Cause.VOLTAGE_CHANNEL),
+        (Kind.CURRENT_CHANNEL, Cause.CURRENT_CHANNEL),
+        (Kind.CONNECTION, Cause.CONNECTION),
+    ],
+)
+def test_what_the_condition_names_is_the_answer(kind: Kind, cause: Cause) -> None:
+    found = _answer(_condition(kind))
+    assert found.is_told
+    assert found.answer.causes == {cause}
+    assert not any("differs" in reason for reason in found.reasons)
+
+
+def test_what_the_condition_leaves_open_is_left_open_with_what_would_tell() -> None:
+    condition = _condition(Kind.UNCLEAR, State.FAULT, Kind.SHORTED_TURNS, Kind.CONNECTION)
+    found = _answer(condition)
+    assert not found.is_told
+    assert {pair.other.causes | pair.one.causes for pair in found.not_told_apart} >= {
+        frozenset({Cause.SHORTED_TURNS, Cause.CONNECTION})
+    }
+    assert any("another load" in test for test in found.not_told_apart[0].tests)
+
+
+def test_faults_of_stator_and_rotor_are_told_together() -> None:
+    found = _answer(_condition(Kind.SHORTED_TURNS), rotor=UNEVEN)
+    assert found.answer.causes == {Cause.SHORTED_TURNS, Cause.ROTOR}
+
+
+@pytest.mark.parametrize(("level", "changed"), [(0.25, True), (0.55, False), (0.95, True)])
+def test_a_load_that_stays_another_is_told(level: float, *, changed: bool) -> None:
+    found = _answer(load_levels=[*LOADS, level, level, level])
+    assert (found.answer.causes == {Cause.LOAD}) == changed
+
+
+def test_one_record_at_another_load_is_no_changed_load() -> None:
+    assert _answer(load_levels=[*LOADS, 0.2, 0.6, 0.6]).words == "healthy"
+
+
+def test_starts_tell_a_rotor_that_the_records_do_not() -> None:
+    starts = StartChanges(ChangeState.CHANGED, (StartCause.ROTOR,), (), (), None, None, ("a slower start",))
+    unsupported = RotorCondition(RotorState.UNSUPPORTED, None, None, None, None, (), ())
+    with_starts = _answer(rotor=unsupported, starts=starts)
+    without = _answer(rotor=unsupported)
+    likelihood = {one.cause: one.log_likelihood_ratio for one in with_starts.likelihoods}
+    assert likelihood[Cause.ROTOR] == pytest.approx(5.0)
+    assert Cause.ROTOR in {one.cause for one in without.likelihoods if one.log_likelihood_ratio is None}
+
+
+def test_a_motor_of_which_nothing_is_known_is_not_called_healthy() -> None:
+    unsupported = RotorCondition(RotorState.UNSUPPORTED, None, None, None, None, (), ())
+    found = _answer(condition_of(MEDIUM, None, 0), rotor=unsupported, records=[], load_levels=[])
+    assert not found.is_told
+
+
+def test_records_are_read_back_from_their_documents() -> None:
+    document = _answer(rotor=UNEVEN).as_dict()
+    read = RecordAnswer.from_dict(document)
+    assert read.log_likelihood_ratios[Cause.ROTOR] > 10.0
+    with pytest.raises(TypeError, match="likelihoods"):
+        RecordAnswer.from_dict({"likelihoods": None})
