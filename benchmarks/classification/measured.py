@@ -107,8 +107,8 @@ def _itsc(folder: Path, pool: Executor) -> Iterator[str]:
         )
     ]
     yield (
-        f"A motor on a bench, {len(found)} records of 1 s without voltages, turns of one phase shorted in most. "
-        "Without voltages a fault, a channel and the supply look alike, and that is what is said."
+        f"A motor on a bench, {len(found)} records of 1 s without voltages, turns of one phase shorted in "
+        "most. Without voltages a fault, a channel and the supply look alike, and that is what is said."
     )
     yield ""
     yield from table(["truth", "answer", "records"], rows)

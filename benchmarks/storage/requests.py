@@ -80,6 +80,7 @@ TIMED: Mapping[str, tuple[str, ...]] = {
     "/api/v1/motors/{name}/parameters": _MOTOR,
     "/api/v1/motors/{name}/parameters/trend": _TREND,
     "/api/v1/motors/{name}/rotor": _MOTOR,
+    "/api/v1/motors/{name}/classification": _MOTOR,
     "/api/v1/motors/{name}/rotor/trend": _TREND,
     "/api/v1/motors/{name}/supply/trend": _TREND,
     "/api/v1/motors/{name}/starts": (*_MOTOR, "{busy}?limit=1000", "{busy}?cursor={deep}"),

@@ -4,10 +4,8 @@ from dataclasses import dataclass
 from math import exp, log
 from typing import Final
 
-from scipy.special import logsumexp
-
 from core.classification.causes import NOTHING, PRIORS, Cause, Causes, words
-from core.classification.evidence import Evidence, together
+from core.classification.evidence import Evidence, log_sum, together
 from core.classification.telling import what_tells
 
 TOLD: Final = 0.9
@@ -184,7 +182,7 @@ def classify(evidence: Evidence) -> Classification:
     known = frozenset().union(*(block.causes for block in evidence.blocks))
     weighed = together(known)
     logs = [_log_prior(causes) + sum(block.of(causes) for block in evidence.blocks) for causes in weighed]
-    total = float(logsumexp(logs))
+    total = log_sum(logs)
     found = sorted(
         (Explanation(causes, exp(one - total)) for causes, one in zip(weighed, logs, strict=True)),
         key=lambda one: -one.probability,

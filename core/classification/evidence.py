@@ -1,8 +1,9 @@
 """Evidence for causes: independent blocks of measured figures, each with likelihoods of its own causes."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations
+from math import exp, log
 from typing import Final, NamedTuple
 
 from core.classification.causes import NOTHING, Cause, Causes
@@ -109,6 +110,23 @@ class Evidence:
     blocks: tuple[Block, ...]
     untold: Mapping[Cause, str] = field(default_factory=dict)
     verdicts: tuple[Verdict, ...] = ()
+
+
+def log_sum(logs: Sequence[float]) -> float:
+    """Return the log of the sum of what logs are given of.
+
+    Parameters
+    ----------
+    logs : sequence of float
+        Logs, one at least.
+
+    Returns
+    -------
+    float
+        Log of the sum.
+    """
+    highest = max(logs)
+    return highest + log(sum(exp(one - highest) for one in logs))
 
 
 def together(causes: Iterable[Cause]) -> list[Causes]:

@@ -11,12 +11,11 @@ from statistics import median
 from types import MappingProxyType
 from typing import Final
 
+from core.classification.amplitude import rotor_block
 from core.classification.causes import PRIORS, Cause, Causes
 from core.classification.classification import Classification, classify
 from core.classification.evidence import Block, Evidence, Verdict, only, together
-from core.classification.swings import rotor_block
 from core.condition.kinds import Kind, State
-from core.condition.verdict.condition import Condition
 from core.rotor.finding import RotorState
 from core.rotor.trend import RotorCondition
 from core.starts.compared import StartCause, StartChanges
@@ -38,7 +37,7 @@ NAMED, CANDIDATE, SOUND = 8.0, 6.0, -3.0
 """Evidence of the condition: for the kind that it names, which takes a probability of 0.98; for each of
 several candidates; and against what it would have seen."""
 FROM_STARTS, FROM_TRACKING = 5.0, 4.0
-"""Evidence of a cause of other starts, and of a drift of a parameter: each is told beyond its 95 % interval."""
+"""Evidence of a cause of other starts, and of a drift of a parameter: each is beyond its 95 % interval."""
 FEWEST_LOADS, LATEST_LOADS = 8, 3
 """Earlier records that a load is compared with at least, and latest ones that have to agree."""
 LOAD_SCATTER, LOAD_CHANGE = 0.03, 0.3
@@ -96,8 +95,14 @@ class MotorEvidence:
 
     Parameters
     ----------
-    condition : Condition
-        Its condition.
+    state : State
+        State of its condition.
+    kind : Kind
+        What the condition says has changed.
+    candidates : tuple of Kind
+        What an unclear kind may be.
+    phase : str or None
+        Phase of the change.
     rotor : RotorCondition
         The condition of its rotor.
     records : sequence of RecordAnswer
@@ -110,7 +115,10 @@ class MotorEvidence:
         Parameters followed while it runs.
     """
 
-    condition: Condition
+    state: State
+    kind: Kind
+    candidates: tuple[Kind, ...]
+    phase: str | None
     rotor: RotorCondition
     records: Sequence[RecordAnswer]
     load_levels: Sequence[float]
@@ -132,7 +140,7 @@ def classify_motor(known: MotorEvidence) -> Classification:
         The answer.
     """
     blocks: list[Block | None] = [
-        _phases(known.condition, known.records),
+        _phases(known),
         rotor_block(known.rotor.severity_dB, known.rotor.severity_dB_ci95),
         *(_of_records(known.records, cause) for cause in (Cause.PULSATION, Cause.ECCENTRICITY)),
         _load(known.load_levels),
@@ -145,22 +153,23 @@ def classify_motor(known: MotorEvidence) -> Classification:
     return classify(Evidence(told, untold, _verdicts(known)))
 
 
-def _phases(condition: Condition, records: Sequence[RecordAnswer]) -> Block | None:
+def _phases(known: MotorEvidence) -> Block | None:
     """Return the evidence of unlike phases, from the condition or, where it names nothing, the records."""
-    if condition.state is State.UNKNOWN:
+    if known.state is State.UNKNOWN:
         return None
-    named = condition.candidates if condition.kind is Kind.UNCLEAR else (condition.kind,)
+    named = known.candidates if known.kind is Kind.UNCLEAR else (known.kind,)
+    said = f"the condition is {known.state}, {_kind_words(known)}"
     suspected = frozenset(OF_KINDS[kind] for kind in named if kind in OF_KINDS)
     ratios: dict[Cause, float] = {}
     figures: dict[Cause, str] = {}
     for cause in OF_KINDS.values():
-        of_records = _median(records, cause)
+        of_records = _median(known.records, cause)
         if cause in suspected:
             ratios[cause] = NAMED if len(suspected) == 1 else CANDIDATE
-            figures[cause] = f"the condition is {condition.state}, {_kind_words(condition)}"
+            figures[cause] = said
         elif cause in (Cause.SHORTED_TURNS, Cause.CONNECTION) or (suspected and cause in _OF_CHANGES):
-            ratios[cause] = SOUND if condition.kind is not Kind.UNCLEAR or suspected else 0.0
-            figures[cause] = f"the condition is {condition.state}, {_kind_words(condition)}"
+            ratios[cause] = SOUND if known.kind is not Kind.UNCLEAR or suspected else 0.0
+            figures[cause] = said
         elif cause is not Cause.ROTOR and of_records is not None:
             ratios[cause], figures[cause] = of_records
     likelihood = {some: _joined(some, ratios, suspected) for some in together(ratios) if some}
@@ -178,13 +187,13 @@ def _joined(causes: Causes, ratios: Mapping[Cause, float], suspected: Causes) ->
     return max(of_one_change, default=0.0) + sum(ratios[cause] for cause in causes - suspected)
 
 
-def _kind_words(condition: Condition) -> str:
-    if condition.kind is Kind.NONE:
+def _kind_words(known: MotorEvidence) -> str:
+    if known.kind is Kind.NONE:
         return "nothing has changed"
-    where = "" if condition.phase is None else f" {condition.phase}"
-    if condition.kind is Kind.UNCLEAR and condition.candidates:
-        return " or ".join(phrase(kind) for kind in condition.candidates) + where
-    return phrase(condition.kind) + where
+    where = "" if known.phase is None else f" {known.phase}"
+    if known.kind is Kind.UNCLEAR and known.candidates:
+        return " or ".join(phrase(kind) for kind in known.candidates) + where
+    return phrase(known.kind) + where
 
 
 def _of_records(records: Sequence[RecordAnswer], cause: Cause) -> Block | None:
@@ -245,12 +254,11 @@ def _tracked(tracked: TrackedParameters | None) -> list[Block]:
 
 def _verdicts(known: MotorEvidence) -> tuple[Verdict, ...]:
     """Return what condition and rotor say for sure; both raise alarms."""
-    condition, rotor = known.condition, known.rotor
-    found = []
-    if condition.state is State.FAULT and condition.kind is Kind.SHORTED_TURNS:
-        words = f"fault, {_kind_words(condition)}"
+    rotor, found = known.rotor, []
+    if known.state is State.FAULT and known.kind is Kind.SHORTED_TURNS:
+        words = f"fault, {_kind_words(known)}"
         found.append(Verdict(Cause.SHORTED_TURNS, is_there=True, words=words))
-    if condition.state is State.HEALTHY:
+    if known.state is State.HEALTHY:
         found.append(Verdict(Cause.SHORTED_TURNS, is_there=False, words="no shorted turns"))
     if rotor.state is RotorState.FAULT:
         found.append(Verdict(Cause.ROTOR, is_there=True, words="fault of the rotor"))

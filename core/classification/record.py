@@ -3,11 +3,12 @@
 from types import MappingProxyType
 from typing import Final
 
+from core.classification.amplitude import rotor_block
 from core.classification.asymmetry import asymmetry_block
 from core.classification.causes import PRIORS, Cause
 from core.classification.classification import Classification, classify
 from core.classification.evidence import Block, Evidence, Verdict, only
-from core.classification.swings import eccentricity_block, pulsation_block, rotor_block
+from core.classification.swings import eccentricity_block, pulsation_block
 from core.condition.errors import ObservationError
 from core.condition.measuring.observing import Examined
 from core.diagnosis.verdict import Diagnosis

@@ -1,24 +1,15 @@
-"""Evidence of what swings: the rotor's asymmetry, the air gap's permeance, and the load's torque.
+"""Evidence of what swings: the air gap's permeance, and the load's torque."""
 
-Each figure is the amplitude of a line whose phase tells nothing: complex and Gaussian, with the variance of
-its measurement and that of what a sound motor, or one with the cause, is expected to have.
-"""
-
-from collections.abc import Sequence
 from math import log
 from typing import Final
 
-from scipy.special import logsumexp
-
+from core.classification.amplitude import log_ratio, ratio
 from core.classification.causes import Cause
-from core.classification.evidence import Block, only
+from core.classification.evidence import Block, log_sum, only
 from core.rotor.eccentricity import EccentricityFinding
-from core.rotor.finding import RotorFinding, RotorState
-from core.rotor.judgement import LOAD_OSCILLATION
+from core.rotor.finding import LOAD_OSCILLATION, RotorFinding, RotorState
 from core.rotor.pulsation import PulsationFinding
 
-EVEN_CAGE, UNEVEN_CAGES = 0.005, (0.02, 0.06, 0.18)
-"""Asymmetry of a sound cage, rms (-46 dB), and of cages with broken bars: one of 28 has 0.034."""
 EVEN_GAP, UNEVEN_GAPS = 0.004, (0.03, 0.1)
 """Ripple of the permeance of a sound motor, a tenth of static times a twentieth of dynamic eccentricity, and
 of motors to be looked after."""
@@ -26,34 +17,6 @@ STEADY_LOAD, SWINGING_LOADS = 0.004, (0.03, 0.1)
 """Swing of a steady load's torque over the rated one, rms, and of loads that pulsate."""
 TORQUE_NOISE: Final = 0.002
 """Noise of the torque at twice the slip, rms, over rated torque; the rotor's finding does not tell it."""
-
-
-def rotor_block(severity_dB: float | None, ci95: tuple[float, float] | None) -> Block | None:
-    """Return the evidence of the rotor's asymmetry.
-
-    Parameters
-    ----------
-    severity_dB : float or None
-        Asymmetry of the rotor's resistance, of a record or of a motor's latest ones [dB].
-    ci95 : tuple of float or None
-        Its 95 % interval [dB].
-
-    Returns
-    -------
-    Block or None
-        The evidence; None where nothing can be told.
-    """
-    if severity_dB is None or ci95 is None:
-        return None
-    value = _ratio(severity_dB)
-    low, high = map(_ratio, ci95)
-    # The interval is cut off at the lowest figure that is written.
-    deviation = max(high - low, 2.0 * (high - value)) / (2.0 * 1.96)
-    return only(
-        Cause.ROTOR,
-        _log_ratio(value, deviation, EVEN_CAGE, UNEVEN_CAGES),
-        f"asymmetry of the rotor's resistance {severity_dB:.1f} dB",
-    )
 
 
 def eccentricity_block(finding: EccentricityFinding) -> Block | None:
@@ -74,7 +37,7 @@ def eccentricity_block(finding: EccentricityFinding) -> Block | None:
         return None
     return only(
         Cause.ECCENTRICITY,
-        _log_ratio(value, deviation, EVEN_GAP, UNEVEN_GAPS),
+        log_ratio(value, deviation, EVEN_GAP, UNEVEN_GAPS),
         f"the air gap's permeance ripples by {value:.1%} once a turn (+-{1.96 * deviation:.1%})",
     )
 
@@ -102,7 +65,7 @@ def pulsation_block(
     if rotor.load_oscillation_dB is not None and rotor.state in (RotorState.WATCH, RotorState.FAULT):
         # The rotor's own rule tells a swing of the load from an inertia that is wrong.
         is_of_load = any(reason.startswith(f"{LOAD_OSCILLATION}:") for reason in rotor.reasons)
-        swing = _ratio(rotor.load_oscillation_dB) if is_of_load else 0.0
+        swing = ratio(rotor.load_oscillation_dB) if is_of_load else 0.0
         swings.append((swing, TORQUE_NOISE, "at twice the slip"))
     if eccentricity.load_torque is not None and eccentricity.load_torque_deviation is not None:
         swings.append((eccentricity.load_torque, eccentricity.load_torque_deviation, "once a turn"))
@@ -111,25 +74,10 @@ def pulsation_block(
         swings.append((pulsation.load_torque, pulsation.noise, where))
     if not swings:
         return None
-    ratios = [_log_ratio(swing, noise, STEADY_LOAD, SWINGING_LOADS) for swing, noise, _ in swings]
+    ratios = [log_ratio(swing, noise, STEADY_LOAD, SWINGING_LOADS) for swing, noise, _ in swings]
     swing, _, where = swings[ratios.index(max(ratios))]
     return only(
         Cause.PULSATION,
-        float(logsumexp(ratios)) - log(len(ratios)),
+        log_sum(ratios) - log(len(ratios)),
         f"the load's torque swings by {swing:.1%} of the rated one {where}",
     )
-
-
-def _log_ratio(value: float, deviation: float, sound: float, uneven: Sequence[float]) -> float:
-    """Return the log of the likelihood ratio of an amplitude: with the cause to without it."""
-
-    def log_density(expected: float) -> float:
-        variance = 2.0 * deviation**2 + expected**2
-        return -(value**2) / variance - log(variance)
-
-    with_it = float(logsumexp([log_density(one) for one in uneven])) - log(len(uneven))
-    return with_it - log_density(sound)
-
-
-def _ratio(level_dB: float) -> float:
-    return float(10.0 ** (level_dB / 20.0))

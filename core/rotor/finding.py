@@ -6,6 +6,8 @@ from math import log10
 
 LOWEST_DB = -120.0
 """What is less is written so."""
+LOAD_OSCILLATION = "load oscillation"
+"""So begins the reason that tells of one."""
 LOAD_BINS, BINS_PER_RATED_LOAD = 12, 10
 """Loads up to 1.2 times the rated one in tenths of it."""
 

@@ -4,7 +4,7 @@ from typing import Final
 
 from core.machines.parameters import MachineKind
 from core.rotor.asymmetry import Asymmetry
-from core.rotor.finding import RotorState, decibels
+from core.rotor.finding import LOAD_OSCILLATION, RotorState, decibels
 
 WATCH_DB, FAULT_DB = -42.0, -36.0
 """Severities: cages as they are made stay below the first. One open bar of 50 reaches the second; one of 28
@@ -16,8 +16,6 @@ CERTAIN_RATIO = 4.0
 LEAST_LOAD_SHARE = 0.5
 """Share of the load's torque in the torques of a ripple of the speed from which on the load makes it. An
 asymmetry of the rotor needs none; an inertia that is wrong by a factor of two makes a third of it."""
-LOAD_OSCILLATION = "load oscillation"
-"""So begins the reason that tells of one."""
 UNEVEN_WINDING = "an uneven rotor winding"
 """So begins what is said of a wound rotor."""
 FAULTY: Final = {

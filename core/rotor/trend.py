@@ -10,8 +10,7 @@ from dataclasses import dataclass
 from statistics import median
 from typing import NamedTuple
 
-from core.rotor.finding import LOAD_BINS, RotorFinding, RotorState
-from core.rotor.judgement import LOAD_OSCILLATION
+from core.rotor.finding import LOAD_BINS, LOAD_OSCILLATION, RotorFinding, RotorState
 
 BASELINE_RECORDS = 3
 """First records of a load bin, whose median is its baseline."""

@@ -18,6 +18,7 @@ from service.api.alarms import lists as alarm_lists
 from service.api.alarms import people as alarm_people
 from service.api.audit import trail as audit_trail
 from service.api.backups import routes as backups
+from service.api.classification import routes as classification
 from service.api.conditions import notes
 from service.api.conditions import routes as conditions
 from service.api.context import ApiContext
@@ -71,6 +72,7 @@ def create_app(
         notes,
         rotor_and_supply,
         tracking,
+        classification,
         load,
         baselines,
         starts,

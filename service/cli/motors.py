@@ -10,6 +10,7 @@ from core.error_words import one_line
 from core.machines.parameters import ParametersSource
 from core.machines.typical import COMMISSION
 from service.cli.output import facts_table, failing_clearly, print_document, results
+from service.client.classification import answer_rows
 from service.client.conditions import as_of, condition_lines, condition_of, since_day, state_text
 from service.client.rest_client import Document, ServiceClient, ServiceError, segment
 from service.client.rotor_conditions import rotor_lines, rotor_of
@@ -50,12 +51,15 @@ def show_health(url: str, motor: str, *, as_json: bool) -> None:
     """Print a motor's condition: what to do and why, its rotor, its latest recording. Raises CommandError."""
     with failing_clearly(ServiceError), ServiceClient(url) as service:
         health = service.get(f"/motors/{segment(motor)}/health")
+        answer = service.get(f"/motors/{segment(motor)}/classification")
         lines = condition_lines(condition_of(health))
         rotor = rotor_of(service, motor)
+        told = [(name, Text(one_line(words))) for name, words in answer_rows(answer)]
     if as_json:
-        print_document({**health, "rotor": rotor})
+        print_document({**health, "rotor": rotor, "classification": answer})
         return
-    results().print(facts_table(lines, rotor_lines(rotor), _latest_recording(health), title=motor))
+    parts = (lines, told, rotor_lines(rotor), _latest_recording(health))
+    results().print(facts_table(*parts, title=motor))
 
 
 def motors_table(healths: Sequence[Document]) -> FittedTable:

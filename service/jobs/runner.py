@@ -296,7 +296,16 @@ class JobRunner:
                 self._repository.reject_recording(job.id, reason, now_ns=time.time_ns(), runner=self._id)
                 log.warning("recording rejected", recording=job.recording_id, reason=storable(reason))
             case Diagnosed(
-                diagnosis, recorded_ns, observation, remark, has_time_code, start, rotor, supply, length
+                diagnosis,
+                recorded_ns,
+                observation,
+                remark,
+                has_time_code,
+                start,
+                rotor,
+                supply,
+                length,
+                answer,
             ):
                 now_ns, left_out = time.time_ns(), None
                 if claimed.is_joined:  # the recordings it is made of tell the condition
@@ -322,6 +331,7 @@ class JobRunner:
                         rotor=rotor,
                         supply=supply,
                         length=length,
+                        classification=answer,
                     )
                 except UnstorableDiagnosisError as error:
                     self._retry(claimed, f"the diagnosis cannot be stored: {error}")

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+from core.classification.classification import Classification
 from core.condition.observation import Observation
 from core.diagnosis.verdict import Diagnosis
 from core.machines.parameters import Motor
@@ -41,7 +42,7 @@ class Diagnosed:
     has_time_code: whether the record tells how far its times are ahead of UTC.
     length: that of the record.
     start: what a start shows; None of other records, and where nothing can be measured.  rotor, supply: what
-    the record shows of them; None where it shows nothing.
+    the record shows of them; None where it shows nothing.  classification: which causes are likely.
     """
 
     diagnosis: Diagnosis
@@ -53,6 +54,7 @@ class Diagnosed:
     rotor: RotorFinding | None = None
     supply: SupplyFigures | None = None
     length: RecordLength | None = None
+    classification: Classification | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -32,6 +32,7 @@ def prepare_worker() -> None:
 
 def diagnose_recording(task: DiagnosisTask) -> Outcome:
     """Read and diagnose one recording; what would fail again is an outcome, not an error."""
+    from core.classification.record import classify_record
     from core.condition.measuring.observing import examine
 
     try:
@@ -61,6 +62,7 @@ def diagnose_recording(task: DiagnosisTask) -> Outcome:
         examined.rotor,
         examined.supply,
         _length(recording),
+        classify_record(examined, task.motor),
     )
 
 

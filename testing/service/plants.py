@@ -100,4 +100,4 @@ def undiagnosable() -> Diagnosis:
 
 def stored_document(diagnosis: Diagnosis) -> dict[str, object]:
     """What is stored of a diagnosis whose record shows nothing beside."""
-    return {**diagnosis.as_dict(), "rotor": None, "supply": None}
+    return {**diagnosis.as_dict(), "rotor": None, "supply": None, "classification": None}

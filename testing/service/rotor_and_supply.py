@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+from core.classification.classification import Classification
 from core.diagnosis.verdict import Diagnosis
 from core.rotor.finding import RotorFinding, RotorState
 from core.supply.figures import SupplyFigures
@@ -85,13 +86,16 @@ class ExaminedRecordings:
         motor: str = "PUMP-A1",
         diagnosis: Diagnosis | None = None,
         left_out: str | None = None,
+        classification: Classification | None = None,
     ) -> str:
         """Add a recording with what it shows; return its id."""
         self._number += 1
         now_ns = NOW_NS + self._number * SECOND_NS
         stored = self._store.store({f"R{self._number}.CFF": f"{motor} {self._number}".encode()})
         added = self.repository.add_recording(stored, motor=motor, now_ns=now_ns)
-        self.diagnose(rotor, supply, now_ns, diagnosis=diagnosis, left_out=left_out)
+        self.diagnose(
+            rotor, supply, now_ns, diagnosis=diagnosis, left_out=left_out, classification=classification
+        )
         return added.recording.id
 
     def diagnose(
@@ -102,6 +106,7 @@ class ExaminedRecordings:
         *,
         diagnosis: Diagnosis | None = None,
         left_out: str | None = None,
+        classification: Classification | None = None,
     ) -> None:
         """Have the next recording that waits diagnosed."""
         claimed = self.repository.claim_job(now_ns=recorded_ns + 1000 * SECOND_NS, runner=RUNNER)
@@ -115,4 +120,5 @@ class ExaminedRecordings:
             left_out=left_out,
             rotor=rotor,
             supply=supply,
+            classification=classification,
         )

@@ -9,6 +9,7 @@ from core.diagnosis import methods
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
 from core.diagnosis.verdict import Verdict
 from core.operation import Operation
+from service.api.classification.schemas import Classification
 from service.api.document import Document, Listed, RequestDocument
 from service.api.rotor_and_supply.schemas import RotorFinding, SupplyFigures
 from service.api.times import Time
@@ -78,6 +79,7 @@ class Diagnosis(Document):
     parameters. ..._scatter95: from the record's own scatter alone. speed_rpm: of the shaft, from the fit.
     detection_limit: nine of ten such recordings show a fault of that mu_f. currents_only: the voltages are
     assumed. operation: what the motor does in the recording. rotor, supply: what it shows of them.
+    classification: which causes are likely.
     Diagnoses of earlier versions lack some: of those that knew only the scatter, ..._ci95 is null.
     """
 
@@ -106,6 +108,7 @@ class Diagnosis(Document):
     fit: FittedParameters | None = None
     rotor: RotorFinding | None = None
     supply: SupplyFigures | None = None
+    classification: Classification | None = None
 
     @property
     def rotor_slip(self) -> float | None:

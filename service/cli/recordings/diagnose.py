@@ -131,7 +131,7 @@ def _table(
     if diagnosis.residual_rms_A is not None:
         table.add_row("residual", f"{with_unit(diagnosis.residual_rms_A, 'A', 4)} rms")
     _add_what_is_beside(table, examined)
-    for name, words in answer_rows(answer):
+    for name, words in answer_rows(answer.as_dict()):
         table.add_row(name, Text(words))
     table.add_row("model, method", f"{diagnosis.model}, {diagnosis.method}")
     table.add_row("effort", f"{diagnosis.evaluations} evaluations, {diagnosis.compute_seconds:.3f} s")

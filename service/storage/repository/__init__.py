@@ -13,6 +13,7 @@ from service.storage.repository.conditions.events import ConditionEventRows
 from service.storage.repository.conditions.folding import FoldingRows
 from service.storage.repository.conditions.observations import ObservationRows
 from service.storage.repository.conditions.tracking import TrackingRows
+from service.storage.repository.history.answers import AnswerRows
 from service.storage.repository.history.condition_days import ConditionDayRows
 from service.storage.repository.history.conditions import PastConditionRows
 from service.storage.repository.history.metered import MeteredRows
@@ -65,6 +66,7 @@ class Repository(
     StartRows,
     RotorRows,
     SupplyRows,
+    AnswerRows,
     ThinnedTrendRows,
     NeighbourRows,
     PastConditionRows,

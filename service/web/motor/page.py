@@ -21,6 +21,7 @@ from service.storage.records import (
     RecordingRequest,
 )
 from service.web.charts import Chart
+from service.web.motor.answer import AnswerSection, answer_section
 from service.web.motor.drawings import MotorDrawings, motor_drawings
 from service.web.motor.marks import trend_marks
 from service.web.motor.measured import MeasuredValues, measured_values
@@ -56,6 +57,7 @@ class MotorPage:
     condition: Condition
     verdict: MotorVerdict
     trend: MotorTrend
+    answer: AnswerSection
     rotor: RotorSection
     supply: SupplySection
     parameters: ParametersSection
@@ -90,6 +92,7 @@ def motor_page(context: ApiContext, name: str, span: TrendSpan, now_ns: int) -> 
         ),
         trend=_trend(repository, name, span, condition, known, now_ns),
         rotor=rotor_section(repository, name, MachineKind.CAGE if known is None else known.motor.kind),
+        answer=answer_section(repository, name),
         supply=supply_section(repository, name),
         parameters=parameters_section(repository, name),
         known=known,

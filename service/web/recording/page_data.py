@@ -11,6 +11,7 @@ from markupsafe import Markup
 from core.recordings.errors import RecordingError, RecordingTooLongError
 from service.api.context import ApiContext
 from service.api.recordings.diagnosis_schemas import Diagnosis
+from service.client.classification import AnswerShown, answer_shown
 from service.pictures.looks import PAGE
 from service.pictures.phasors import Phasor, phasor_picture
 from service.recording_store.store import RecordingStoreError
@@ -80,6 +81,7 @@ class RecordingPage:
     diagnosis: Diagnosis | None
     rotor: RotorShown | None
     supply: SupplyShown | None
+    answer: AnswerShown | None
     files: Sequence[RecordingFile]
     earlier: str | None
     later: str | None
@@ -105,12 +107,20 @@ def recording_page(context: ApiContext, recording_id: str, at_s: float | None) -
         diagnosis=diagnosis,
         rotor=rotor_shown(diagnosis),
         supply=supply_shown(diagnosis),
+        answer=_answer(diagnosis),
         files=repository.recording_files(entry.id),
         earlier=earlier,
         later=later,
         waveforms=waveforms,
         problem=problem,
     )
+
+
+def _answer(diagnosis: Diagnosis | None) -> AnswerShown | None:
+    """Return the answer of a diagnosis; None of one by an earlier version, and without one."""
+    if diagnosis is None or diagnosis.classification is None:
+        return None
+    return answer_shown(diagnosis.classification.model_dump())
 
 
 def cursor_of(context: ApiContext, recording_id: str, at_s: float) -> Cursor:

@@ -1,6 +1,5 @@
 """The answer of a motor, from a condition, a rotor and records that are given."""
 
-from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -9,13 +8,12 @@ from core.classification.causes import Cause
 from core.classification.classification import Classification
 from core.classification.motor import MotorEvidence, RecordAnswer, classify_motor
 from core.condition.kinds import Kind, State
-from core.condition.verdict.condition import Condition, condition_of
 from core.rotor.finding import RotorState
 from core.rotor.trend import RotorCondition
 from core.starts.compared import ChangeState, StartCause, StartChanges
-from testing.machines.motors import MEDIUM
 
-HEALTHY = replace(condition_of(MEDIUM, None, 0), state=State.HEALTHY, kind=Kind.NONE)
+HEALTHY: dict[str, Any] = {"state": State.HEALTHY, "kind": Kind.NONE, "candidates": (), "phase": None}
+UNKNOWN = HEALTHY | {"state": State.UNKNOWN}
 EVEN = RotorCondition(RotorState.HEALTHY, -70.0, (-74.0, -66.0), None, 0, (), ())
 UNEVEN = RotorCondition(RotorState.FAULT, -29.0, (-30.0, -28.0), 30.0, 0, (), ())
 QUIET = RecordAnswer(
@@ -32,13 +30,13 @@ QUIET = RecordAnswer(
 LOADS = [0.6, 0.62, 0.58, 0.61, 0.6, 0.59, 0.63, 0.6, 0.61, 0.6, 0.62, 0.6]
 
 
-def _answer(condition: Condition = HEALTHY, **known: Any) -> Classification:
+def _answer(condition: dict[str, Any] = HEALTHY, **known: Any) -> Classification:
     usual: dict[str, Any] = {"rotor": EVEN, "records": [QUIET] * 3, "load_levels": LOADS}
-    return classify_motor(MotorEvidence(condition, **(usual | known)))
+    return classify_motor(MotorEvidence(**(condition | usual | known)))
 
 
-def _condition(kind: Kind, state: State = State.FAULT, *candidates: Kind) -> Condition:
-    return replace(HEALTHY, state=state, kind=kind, candidates=candidates, phase="b")
+def _condition(kind: Kind, state: State = State.FAULT, *candidates: Kind) -> dict[str, Any]:
+    return {"state": state, "kind": kind, "candidates": candidates, "phase": "b"}
 
 
 def test_a_motor_with_nothing_unusual_is_healthy() -> None:
@@ -100,7 +98,7 @@ def test_starts_tell_a_rotor_that_the_records_do_not() -> None:
 
 def test_a_motor_of_which_nothing_is_known_is_not_called_healthy() -> None:
     unsupported = RotorCondition(RotorState.UNSUPPORTED, None, None, None, None, (), ())
-    found = _answer(condition_of(MEDIUM, None, 0), rotor=unsupported, records=[], load_levels=[])
+    found = _answer(UNKNOWN, rotor=unsupported, records=[], load_levels=[])
     assert not found.is_told
 
 

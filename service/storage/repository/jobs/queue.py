@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from sqlalchemy import Select, func, or_, select, update
 from sqlalchemy.orm import Session, joinedload
 
+from core.classification.classification import Classification
 from core.condition.observation import Observation
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
 from core.diagnosis.verdict import Diagnosis, Verdict, not_finite
@@ -156,6 +157,7 @@ class JobRows(Sessions):
         rotor: RotorFinding | None = None,
         supply: SupplyFigures | None = None,
         length: RecordLength | None = None,
+        classification: Classification | None = None,
     ) -> bool:
         """Keep the result: diagnosis, observation, job, recording and requests in one transaction.
 
@@ -163,7 +165,8 @@ class JobRows(Sessions):
         tells of its motor's condition; None where it tells nothing.  left_out: why it does not count there,
         nor in trends, for people.  operation_remark: why the motor's parameters cannot be estimated from this
         start.  start: what a start shows; None of other records.  rotor, supply: what the record shows of
-        them; None where it shows nothing.  length: that of the record.
+        them; None where it shows nothing.  length: that of the record.  classification: which causes are
+        likely.
         Returns False, and keeps nothing, where the job is not the runner's any more.
         Raises NotFoundError, UnstorableDiagnosisError.
         """
@@ -174,7 +177,7 @@ class JobRows(Sessions):
             if not _is_held(row, runner):
                 return False
             recording = found(session, RecordingRow, row.recording_id, "recording", lock=True)
-            document = _document(diagnosis, rotor, supply)
+            document = _document(diagnosis, rotor, supply, classification)
             session.execute(
                 update(DiagnosisRow).where(DiagnosisRow.recording_id == recording.id).values(current=False)
             )
@@ -344,7 +347,10 @@ def _diagnosis_row(
 
 
 def _document(
-    diagnosis: Diagnosis, rotor: RotorFinding | None, supply: SupplyFigures | None
+    diagnosis: Diagnosis,
+    rotor: RotorFinding | None,
+    supply: SupplyFigures | None,
+    classification: Classification | None,
 ) -> Mapping[str, object]:
     """Return all that a record shows as a document that every database and reader can hold.
 
@@ -353,6 +359,7 @@ def _document(
     document = diagnosis.as_dict() | {
         "rotor": None if rotor is None else rotor.as_dict(),
         "supply": None if supply is None else supply.as_dict(),
+        "classification": None if classification is None else classification.as_dict(),
     }
     way = not_finite(document)
     if way is not None:
