@@ -1,10 +1,12 @@
 """What follows from the rotor's asymmetry in one record."""
 
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from core.machines.parameters import MachineKind
-from core.rotor.asymmetry import Asymmetry
 from core.rotor.finding import LOAD_OSCILLATION, RotorState, decibels
+
+if TYPE_CHECKING:  # pages know the limits and go without the compiler
+    from core.rotor.asymmetry import Asymmetry
 
 WATCH_DB, FAULT_DB = -42.0, -36.0
 """Severities: cages as they are made stay below the first. One open bar of 50 reaches the second; one of 28
@@ -27,13 +29,13 @@ FAULTY: Final = {
 
 
 def judge(
-    found: Asymmetry, kind: MachineKind, *, assumed: bool, typical: bool
+    found: "Asymmetry", kind: MachineKind, *, assumed: bool, typical: bool
 ) -> tuple[RotorState, list[str]]:
     """Judge the rotor's asymmetry.
 
     Parameters
     ----------
-    found : Asymmetry
+    found : "Asymmetry"
         The asymmetry.
     kind : MachineKind
         What the rotor is.
@@ -66,7 +68,7 @@ def judge(
     return state, reasons
 
 
-def _state(found: Asymmetry, kind: MachineKind) -> tuple[RotorState, str]:
+def _state(found: "Asymmetry", kind: MachineKind) -> tuple[RotorState, str]:
     low, high = (decibels(bound) for bound in found.interval)
     severity, limit = decibels(found.value), decibels(found.detection_limit)
     uneven = f"the rotor's resistance is uneven by {severity:.1f} dB (95 %: {low:.1f} to {high:.1f} dB)"
@@ -84,7 +86,7 @@ def _state(found: Asymmetry, kind: MachineKind) -> tuple[RotorState, str]:
     return RotorState.HEALTHY, f"no uneven rotor: this record would show {limit:.1f} dB"
 
 
-def _load_oscillates(found: Asymmetry) -> bool:
+def _load_oscillates(found: "Asymmetry") -> bool:
     makes = found.load_torque / (found.load_torque + found.inertia_torque + 1e-12)
     certain = found.load_torque > CERTAIN_RATIO * found.load_torque_noise
     return certain and found.load_torque > LEAST_LOAD_TORQUE and makes > LEAST_LOAD_SHARE
