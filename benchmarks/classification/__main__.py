@@ -16,8 +16,9 @@ What is said of one record of a motor, by `core.classification`. The motors are 
 drop of 4 to 12 % of the rated voltage, V2/V1 of 2.5 to 5 %, channels off by 4 to 10 %, one to three broken
 bars of 28, a load that swings by 3 to 10 % at 1 to 15 Hz, mixed eccentricity of 20 to 40 % times 15 to 30 %,
 or a motor's file whose L_s is off by 25 to 70 %. Every record has noise of 0.1 to 0.5 %, harmonics, channels
-off by up to 1 %, and parameters off by up to 5 %. No rule was fitted to these records: the spreads and priors
-are in `core/classification`, and the tests use other seeds.
+off by up to 1 %, and parameters off by up to 5 %. The spreads and priors are in `core/classification`; none
+was fitted to these records, and the tests use other seeds. After a first look at a fifth of them one thing
+was changed: the torque takes in what an uneven air gap pulls.
 
 One record does not tell what the load was before; that cause is told over a motor's records alone.
 """
