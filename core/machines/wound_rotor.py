@@ -75,7 +75,7 @@ def external_resistance_ohm(motor: Motor) -> tuple[float, float]:
     Returns
     -------
     tuple of float
-        u^2 R_ext [ohm]; zero of a cage.
+        The ends of u^2 R_ext [ohm]; zero of a cage.
     """
     if motor.wound_rotor is None:
         return 0.0, 0.0

@@ -24,11 +24,11 @@ def without_leakage(
     asymmetry : float
         As measured; below zero it is left as it is.
     slip_over_resistance : float
-        lambda [1/H].
+        Ratio lambda [1/H].
     magnetising_inductance_H : float
         L_m [H].
     factor : float, default USUAL
-        c.
+        Factor c.
 
     Returns
     -------

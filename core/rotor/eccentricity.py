@@ -56,7 +56,7 @@ class EccentricityFinding:
     load_torque_deviation : float or None
         Its standard deviation, over rated torque.
     rotation_frequency_hz : float or None
-        f_r, at which the lines stand [Hz].
+        Frequency f_r at which the lines stand [Hz].
     reasons : tuple of str
         What limits the figures, in words.
     """

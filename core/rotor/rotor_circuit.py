@@ -105,7 +105,7 @@ def rotor_side(
     Returns
     -------
     tuple of ndarray of complex, shape (lines,)
-        psi_s [V s], i_r [A] and psi_r [V s].
+        Stator flux psi_s [V s], rotor current i_r [A] and rotor flux psi_r [V s].
     """
     L_ls, L_m = machine.stator_leakage_H, machine.magnetising_inductance_H
     v, i_s = line.T

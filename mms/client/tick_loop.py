@@ -70,6 +70,11 @@ class TickedConnection:
         ----------
         timeout_s : float
             Longest wait for an answer, as the library knows it [s].
+
+        Yields
+        ------
+        None
+            Nothing; the block makes the request.
         """
         before = self._timeout_s, self.due_s
         self._heard_s = time.monotonic()
@@ -172,12 +177,24 @@ class TickLoop:
                 self._epoll.unregister(connection.descriptor)
 
     def watch(self, connection: TickedConnection) -> None:
-        """Heed the deadline of a connection's request."""
+        """Heed the deadline of a connection's request.
+
+        Parameters
+        ----------
+        connection : TickedConnection
+            The connection.
+        """
         with self._lock:
             self._requesting.add(connection)
 
     def unwatch(self, connection: TickedConnection) -> None:
-        """Heed no deadline of a connection: its request has ended."""
+        """Heed no deadline of a connection: its request has ended.
+
+        Parameters
+        ----------
+        connection : TickedConnection
+            The connection.
+        """
         with self._lock:
             self._requesting.discard(connection)
 

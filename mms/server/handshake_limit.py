@@ -25,6 +25,11 @@ def end_connections_after(own: tuple[str, int], limit_s: float) -> Iterator[None
         Address and port at this end.
     limit_s : float
         Time after which they are ended [s].
+
+    Yields
+    ------
+    None
+        Nothing; the block accepts connections.
     """
     older = frozenset(_sockets().values())
 
