@@ -31,7 +31,7 @@ IdempotencyKey = Annotated[
 @router.post(
     "/motors/{name}/event-reports",
     status_code=HTTPStatus.ACCEPTED,
-    responses=problems(404, 409, 429)
+    responses=problems(400, 404, 409, 413, 429)
     | {
         202: {
             "headers": {"Location": {"schema": {"type": "string"}, "description": "The recording request."}}

@@ -8,13 +8,14 @@ from sqlalchemy.orm import Session, aliased
 from core.rotor.finding import RotorState
 from service.alarms.rotor_rules import KINDS
 from service.storage.models import AlarmRow, DiagnosisRow, IedRow, MotorRow
-from service.storage.models.alarms import in_state, is_open
+from service.storage.models.alarms import in_state
 from service.storage.records import CallingAlarms, FleetMotor, LatestFigures, MotorEntry
 from service.storage.repository.conditions.conditions import conditions_of
 from service.storage.repository.sessions import Sessions, columns_of
 from service.storage.states import AlarmState
 
 CALLING = (AlarmState.UNACKNOWLEDGED, AlarmState.RETURNED_UNACKNOWLEDGED)
+OPEN_STATES = tuple(state for state in AlarmState if state is not AlarmState.NORMAL)
 
 
 class FleetRows(Sessions):
@@ -88,6 +89,6 @@ def _rotors(session: Session) -> Mapping[str, RotorState]:
     """Return the state of each rotor that somebody has to look after: that of its standing alarm."""
     state_of = {kind: state for state, kind in KINDS.items()}
     query = select(AlarmRow.motor, AlarmRow.kind).where(
-        is_open(), AlarmRow.kind.in_(tuple(state_of)), AlarmRow.cleared_ns.is_(None)
+        or_(*map(in_state, OPEN_STATES)), AlarmRow.kind.in_(tuple(state_of)), AlarmRow.cleared_ns.is_(None)
     )
     return {motor: state_of[kind] for motor, kind in session.execute(query) if motor is not None}
