@@ -118,6 +118,7 @@ def test_rotor_and_supply_are_told_and_drawn(looked_at: Site) -> None:
     expect(page.page.locator("#supply")).to_contain_text("derating 1.00")
     for key, value in (("rotor-severity", "-68"), ("supply", "0.68")):
         chart = page.page.locator(f'[data-chart="{key}-data"]')
+        expect(chart.locator("[data-chart-tools] button").first).to_be_visible()  # it is drawn
         chart.locator("[data-chart-place]").focus()
         chart.locator("[data-chart-place]").press("End")
         expect(chart.locator("[data-chart-readout]")).to_contain_text(value)

@@ -26,7 +26,7 @@ class Explanation(Document):
 class NotToldApart(Document):
     """Two explanations that are left open, and the records or tests that would tell, the easiest first."""
 
-    explanations: Listed[list[str]]
+    explanations: Listed[Listed[str]]
     tests: Listed[str]
 
 

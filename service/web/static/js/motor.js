@@ -4,24 +4,20 @@
  * and what somebody has opened or looks at closer stays so when the page follows a new record.
  */
 
-import { charts } from "./charts/page.js";
+import { charts, onChart } from "./charts/page.js";
 
 const PAUSE_MS = 200;
 const ID = "trend-data";
 const PLACE = "trend-place";
 const CHART = "trend-chart";
 
-/** Charts that are followed already. @type {WeakSet<object>} */
-const followed = new WeakSet();
-
 /** Parts that were open before they were written anew, by their ids. @type {Set<string>} */
 const opened = new Set();
 
-function follow() {
-  const chart = charts.get(ID);
+/** Get the records of a time when somebody looks closer at it. @param {import("./charts/chart.js").Chart} chart */
+function follow(chart) {
   const place = document.getElementById(PLACE);
-  if (!chart || !place || followed.has(chart)) return;
-  followed.add(chart);
+  if (!place) return;
   const whole = { x: chart.description.x, series: chart.description.series };
   let timer = 0;
   let asked = 0;
@@ -70,7 +66,9 @@ document.addEventListener("htmx:oobBeforeSwap", keep);
 document.addEventListener("htmx:load", () => {
   for (const id of opened) document.getElementById(id)?.setAttribute("open", "");
   opened.clear();
-  queueMicrotask(follow);
 });
 
-follow();
+// The trend is drawn when what is seen at once is painted, and anew when the page follows a record.
+onChart((id, chart) => {
+  if (id === ID) follow(chart);
+});
