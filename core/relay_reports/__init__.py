@@ -1,6 +1,7 @@
 """Reads text reports of motor relays: starts, load profile, statistics, sequence of events."""
 
 from core.relay_reports.error import ReportError
+from core.relay_reports.kinds import other_report
 from core.relay_reports.load_profile import LoadRows, read_load_profile
 from core.relay_reports.motor_starts import StartReport, read_motor_starts
 from core.relay_reports.motor_statistics import MotorStatistics, read_motor_statistics
@@ -12,6 +13,7 @@ __all__ = [
     "ReportError",
     "StartReport",
     "StateChange",
+    "other_report",
     "read_load_profile",
     "read_motor_starts",
     "read_motor_statistics",

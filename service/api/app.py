@@ -25,7 +25,7 @@ from service.api.context import ApiContext
 from service.api.exports import routes as exports
 from service.api.host_guard import HostGuard
 from service.api.limits.arrivals import Arrivals
-from service.api.limits.body_limits import BodyLimits, Route, document
+from service.api.limits.body_limits import MAX_REPORT_BYTES, BodyLimits, Route, document
 from service.api.limits.long_lists import LongLists
 from service.api.load import routes as load
 from service.api.motors import baselines, measurements
@@ -38,6 +38,7 @@ from service.api.relays import routes as relays
 from service.api.reports import routes as reports
 from service.api.rotor_and_supply import routes as rotor_and_supply
 from service.api.samples import routes as samples
+from service.api.starts import reports as start_reports
 from service.api.starts import routes as starts
 from service.api.tracking import routes as tracking
 from service.configuration.access import OidcSettings
@@ -76,6 +77,7 @@ def create_app(
         load,
         baselines,
         starts,
+        start_reports,
         measurements,
         relays,
         alarm_lists,
@@ -106,17 +108,20 @@ def create_app(
     max_upload_bytes = settings.max_upload_bytes
     arrivals = Arrivals(grace_s=settings.transfer_timeout_s, least_rate=settings.min_upload_rate)
     uploads = frozenset((method, PREFIX + path) for method, path in recordings.UPLOAD_ROUTES)
+    texts = frozenset((method, PREFIX + path) for method, path in start_reports.REPORT_ROUTES)
     app.add_middleware(LongLists)
     app.add_middleware(
         BodyLimits,
         upload_routes=uploads | set(page_uploads),
+        report_routes=texts,
         max_upload_bytes=max_upload_bytes,
         arrivals=arrivals,
     )
     app.add_middleware(Gate, context=context, needs=_needs(app))
     hosts = [str(settings.bind_address), *settings.allowed_hosts]
     app.add_middleware(HostGuard, hosts=hosts)
-    _complete_document(app, dict.fromkeys(uploads, max_upload_bytes))
+    limits = dict.fromkeys(uploads, max_upload_bytes) | dict.fromkeys(texts, MAX_REPORT_BYTES)
+    _complete_document(app, limits)
     return app
 
 

@@ -28,7 +28,8 @@ class ApiContext:
     """readiness: a check for each part besides the database. on_new_job: tells the runner not to wait.
 
     uploads: those stored at a time, after they have arrived. passwords: looked at, each in 64 MiB.
-    motors: of the plant's files, by name. compute: has somebody do what needs the numbers.
+    motors: of the plant's files, by name. time_zones: of relays' clocks that do not run in UTC, by motor.
+    compute: has somebody do what needs the numbers.
     waveforms_read: one at a time, because each may have much to read. waveforms_sent: to slow clients, too.
     exports: files of lists, which are made while they are sent. reports: each in a process of its own.
     """
@@ -39,6 +40,7 @@ class ApiContext:
     readiness: Mapping[str, Problem] = field(default_factory=dict)
     on_new_job: Callable[[], None] = _nothing
     motors: Mapping[str, Motor] = field(default_factory=dict)
+    time_zones: Mapping[str, str] = field(default_factory=dict)
     compute: Compute = compute_here
     uploads: Admission = field(default_factory=lambda: Admission("uploads", 3, wait_s=10.0))
     passwords: Admission = field(default_factory=lambda: Admission("passwords", 2, wait_s=10.0))

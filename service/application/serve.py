@@ -89,6 +89,7 @@ def _serve(settings: Settings, settings_file: Path | None, termination: Terminat
             readiness=readiness,
             on_new_job=jobs.wake,
             motors={motor.name: motor.motor for motor in plant.motors},
+            time_zones=plant.time_zones(),
             compute=jobs.compute,
         )
         termination.step()

@@ -183,6 +183,15 @@ class ServiceClient:
         response = self._request("POST", f"{API}/recordings", {}, form={"motor": motor}, files=parts)
         return _document(response), response.status_code == HTTPStatus.CREATED
 
+    def import_starts(self, motor: str, report: bytes, *, date_order: str) -> Document:
+        """Have the starts of a relay's motor start report kept; return what became of them.
+
+        Raises ServiceError.
+        """
+        path = f"{API}/motors/{segment(motor)}/starts/reports"
+        headers = {b"Content-Type": b"text/plain"}
+        return _document(self._request("POST", path, {"date_order": date_order}, headers, content=report))
+
     def download(self, recording_id: str) -> tuple[str, bytes]:
         """Return the name and the content of a recording's archive. Raises ServiceError."""
         response = self._request("GET", f"{API}/recordings/{segment(recording_id)}/file", {})
@@ -274,10 +283,18 @@ class ServiceClient:
         document: Document | None = None,
         form: Mapping[str, str] | None = None,
         files: Sequence[tuple[str, tuple[str, bytes]]] | None = None,
+        content: bytes | None = None,
     ) -> httpx.Response:
         try:
             response = self._http.request(
-                method, path, params=query, headers=headers, json=document, data=form, files=files
+                method,
+                path,
+                params=query,
+                headers=headers,
+                content=content,
+                json=document,
+                data=form,
+                files=files,
             )
         except (httpx.TransportError, httpx.UnsupportedProtocol) as error:
             raise ServiceError(self._nobody(error)) from error

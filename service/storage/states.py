@@ -97,6 +97,13 @@ class RecordingState(StrEnum):
     FAILED = "failed"
 
 
+class StartSource(StrEnum):
+    """What tells of a start: its recording, or the relay's motor start report alone."""
+
+    RECORDING = "recording"
+    REPORT = "report"
+
+
 class RecordingSource(StrEnum):
     """Where a recording came from."""
 

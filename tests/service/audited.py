@@ -152,7 +152,8 @@ def audited_service(data: Path, create: Callable[[ApiContext], FastAPI]) -> Iter
     store = RecordingStore(data / "recordings")
     channels: dict[str, Channel] = {"hook": CommandChannel(kind="command", command=("/bin/true",))}
     settings = Settings(data_directory=data, notifications=NotificationSettings(channels=channels))
-    app = create(ApiContext(settings, repository, store))
+    motors = {one.motor.name: one.motor for one in two_motor_plant().motors}
+    app = create(ApiContext(settings, repository, store, motors=motors))
     with serving(app) as client:
         yield Prepared(app, client, repository, store, count())
     engine.dispose()

@@ -1,17 +1,19 @@
 """Bounds the body of every request, also where the route reads none.
 
 Routes that take files have the limit of the settings (max_upload_bytes), and few of them at once, because the
-files lie in the temporary folder meanwhile; they take forms with files only. All others take small JSON
-documents, or nothing: their bodies are read here to the end, before the route begins.
+files lie in the temporary folder meanwhile; they take forms with files only. Some take a relay's report as
+text. All others take small JSON documents, or nothing. Bodies other than files are read here to the end,
+before the route begins.
 """
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from http import HTTPStatus
 from typing import NoReturn
 
 import anyio
 from starlette.datastructures import Headers
 from starlette.exceptions import HTTPException
+from starlette.routing import compile_path
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from service.api.limits.arrivals import Arrivals
@@ -20,7 +22,11 @@ from service.api.problems import BusyError, busy_response, problem_response
 MAX_JSON_BYTES = 8 * 1024
 """More than the largest document that a route takes, a baseline of a hundred recordings with its reason."""
 
+MAX_REPORT_BYTES = 256 * 1024
+"""More than the text in which a relay tells its latest starts."""
+
 UPLOAD_TYPE = "multipart/form-data"
+REPORT_TYPE = "text/plain"
 
 DISCARDED_BYTES = 1 << 20
 DISCARDING_S = 1.0
@@ -31,13 +37,23 @@ Route = tuple[str, str]
 
 
 class BodyLimits:
-    """ASGI middleware. `upload_routes`: those that take files of up to `max_upload_bytes`."""
+    """ASGI middleware.
+
+    upload_routes: those that take files of up to `max_upload_bytes`. report_routes: those that take a text.
+    """
 
     def __init__(
-        self, app: ASGIApp, *, upload_routes: frozenset[Route], max_upload_bytes: int, arrivals: Arrivals
+        self,
+        app: ASGIApp,
+        *,
+        upload_routes: frozenset[Route],
+        report_routes: Collection[Route],
+        max_upload_bytes: int,
+        arrivals: Arrivals,
     ) -> None:
         self._app = app
         self._upload_routes = upload_routes
+        self._report_routes = [(method, compile_path(path)[0]) for method, path in report_routes]
         self._max_upload_bytes = max_upload_bytes
         self._arrivals = arrivals
 
@@ -46,14 +62,20 @@ class BodyLimits:
             await self._app(scope, receive, send)
             return
         is_upload = (scope["method"], scope["path"]) in self._upload_routes
-        exchange = _Exchange(receive, send, *self._limit(is_upload=is_upload))
+        is_report = any(
+            scope["method"] == method and path.match(scope["path"]) for method, path in self._report_routes
+        )
+        exchange = _Exchange(receive, send, *self._limit(is_upload=is_upload, is_report=is_report))
         headers = Headers(scope=scope)
         try:
             exchange.check_length(headers)
             if is_upload:
                 exchange.check_type(headers, UPLOAD_TYPE)
                 await self._upload(scope, exchange)
-            elif await exchange.read_ahead():
+                return
+            if is_report:
+                exchange.check_type(headers, REPORT_TYPE)
+            if await exchange.read_ahead():
                 await self._app(scope, exchange.receive, exchange.send)
         except _RefusalError as error:
             await problem_response(scope["path"], error.status_code, error.detail, headers=error.headers)(
@@ -67,10 +89,10 @@ class BodyLimits:
         except BusyError as error:
             await busy_response(scope["path"], str(error))(scope, exchange.receive, exchange.send)
 
-    def _limit(self, *, is_upload: bool) -> tuple[int, str]:
+    def _limit(self, *, is_upload: bool, is_report: bool) -> tuple[int, str]:
         if is_upload:
             return self._max_upload_bytes, "; see max_upload_bytes in docs/reference/settings.md"
-        return MAX_JSON_BYTES, ""
+        return MAX_REPORT_BYTES if is_report else MAX_JSON_BYTES, ""
 
 
 def document(operations: Mapping[str, Mapping[str, dict[str, object]]], limits: Mapping[Route, int]) -> None:

@@ -1,4 +1,4 @@
-"""The recorded starts of a motor."""
+"""The starts of a motor."""
 
 from dataclasses import asdict
 from uuid import UUID
@@ -22,7 +22,7 @@ router = APIRouter(prefix="/motors/{name}/starts", tags=["motors"])
 def list_starts(
     context: Context, name: Name, limit: Limit = DEFAULT_LIMIT, cursor: CursorText = None
 ) -> Page[StartSummary]:
-    """Return the recorded starts of a motor, latest first, each beside the reference."""
+    """Return the starts of a motor, latest first, each beside the reference."""
     found = context.repository.starts(name, limit=limit, after=decode(cursor, int, str))
     reference = reference_of(context.repository, name)
     counts = within_hour(context.repository, found.items)
@@ -40,17 +40,19 @@ def get_start(context: Context, name: Name, recording_id: UUID) -> StartDetails:
     counts = within_hour(context.repository, [entry])
     return StartDetails.model_validate(
         _summary(entry, reference, counts[entry.recording_id])
-        | entry.examined.model_as_dict()
+        | entry.filled.model_as_dict()
         | {"curve": asdict(entry.start.curve)}
     )
 
 
 def _summary(entry: StartEntry, reference: Reference, within: int) -> dict[str, object]:
-    start, torque = entry.start, entry.examined.torque
-    stress, sideband = entry.examined.stress, entry.examined.sideband
+    filled = entry.filled
+    start, torque, stress, sideband = filled.figures, filled.torque, filled.stress, filled.sideband
     changes = reference.compared([entry])
     return {
-        "recording_id": entry.recording_id,
+        "id": entry.recording_id,
+        "source": entry.source,
+        "recording_id": entry.recording,
         "time": entry.time_ns,
         "is_from_rest": start.is_from_rest,
         "is_reference": any(entry.recording_id == one.recording_id for one in reference.starts),
@@ -61,6 +63,7 @@ def _summary(entry: StartEntry, reference: Reference, within: int) -> dict[str, 
         "lowest_voltage_V": start.lowest_voltage_V,
         "i2t_A2s": start.i2t_A2s,
         "i2t_over_s": start.i2t_over_s,
+        "from_report": entry.from_report,
         "share_of_hot_limit": None if stress is None else stress.share_of_hot,
         "starts_within_hour": within,
         "starts_allowed": None if stress is None else stress.starts_per_hour,

@@ -1,11 +1,15 @@
-"""Documents of recorded starts. Fields that are null are not known (yet)."""
+"""Documents of starts. Fields that are null are not known (yet)."""
 
 from typing import Literal
+
+from pydantic import Field
 
 from core.rotor.finding import RotorState
 from core.starts.compared import ChangeState, StartCause
 from service.api.document import Document, Listed
 from service.api.times import Time
+from service.storage.records import ReportOutcome
+from service.storage.states import StartSource
 
 Interval = tuple[float, float]
 
@@ -39,14 +43,18 @@ class StartComparison(Document):
 
 
 class StartSummary(Document):
-    """A recorded start. Its figures are defined in docs/reference/operations.md.
+    """A start. Its figures are defined in docs/reference/operations.md.
 
+    source: what tells of it. recording_id: null for a start that the relay's report alone tells. from_report:
+    figures that the recording does not show, and the relay's report of the same start tells.
     share_of_hot_limit: I2t over what the rotor withstands from running temperature. starts_within_hour: in
     the hour that ends with this start; starts_allowed: what the motor file allows.
-    comparison: null for the starts of the reference.
+    comparison: null for the starts of the reference, and for reported ones beside a recorded reference.
     """
 
-    recording_id: str
+    id: str
+    source: StartSource
+    recording_id: str | None
     time: Time
     is_from_rest: bool
     is_reference: bool
@@ -57,6 +65,7 @@ class StartSummary(Document):
     lowest_voltage_V: float | None
     i2t_A2s: float
     i2t_over_s: float
+    from_report: Listed[str]
     share_of_hot_limit: float | None
     starts_within_hour: int
     starts_allowed: int | None
@@ -129,7 +138,7 @@ class StartStressDetails(Document):
 
 
 class StartDetails(StartSummary):
-    """A recorded start with its curves and all that the motor's model tells of it."""
+    """A start with its curves and all that the motor's model tells of it."""
 
     curve: StartCurve
     torque: StartTorqueDetails | None
@@ -137,3 +146,25 @@ class StartDetails(StartSummary):
     sideband: StartSidebandDetails | None
     stress: StartStressDetails | None
     remark: str | None
+
+
+class ImportedStart(Document):
+    """A start of a report: `added`, `joined` with the recording of the same start, or `known` already."""
+
+    id: str
+    time: Time = Field(validation_alias="time_ns")
+    outcome: ReportOutcome
+
+
+class LeftOutStart(Document):
+    """A start of a relay's report that cannot be kept, and why."""
+
+    time: Time
+    reason: str
+
+
+class StartImport(Document):
+    """What became of the starts of a relay's report."""
+
+    starts: Listed[ImportedStart]
+    left_out: Listed[LeftOutStart]

@@ -30,6 +30,7 @@ Limit = Annotated[int, typer.Option("--limit", min=1, max=100_000, help="Show so
 Reason = Annotated[str | None, typer.Option(metavar="TEXT", help="Why; it is kept.")]
 By = Annotated[str | None, typer.Option(metavar="NAME", help="Who says so (default: who is logged in).")]
 Quantity = Literal["mu_f", "theta_f", "load_level", "condition_level", "change"]
+DateOrder = Literal["MDY", "YMD", "DMY"]
 State = Literal["announced", "fetched", "diagnosed", "rejected", "failed"]
 
 
@@ -62,13 +63,23 @@ def starts(
     motor: MotorName,
     url: Url = DEFAULT_URL,
     limit: Limit = 20,
+    report: Annotated[
+        Path | None,
+        typer.Option("--import", metavar="FILE", help="Take the starts of a relay's report (MSR)."),
+    ] = None,
+    date_order: Annotated[
+        DateOrder, typer.Option(help="Order of the report's dates: the relay's setting DATE_F.")
+    ] = "MDY",
     *,
     as_csv: Csv = False,
     as_json: Json = False,
 ) -> None:
-    """Show the recorded starts of a motor, oldest first, and why they are other than the first ones."""
-    from service.cli.recordings.starts import show_starts
+    """Show the starts of a motor, oldest first, and why they are other than the first ones."""
+    from service.cli.recordings.starts import import_starts, show_starts
 
+    if report is not None:
+        import_starts(url, motor, report, date_order, as_json=as_json)
+        return
     show_starts(url, motor, limit=limit, as_csv=as_csv, as_json=as_json)
 
 

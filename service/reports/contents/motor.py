@@ -172,8 +172,12 @@ def _starts(repository: Repository, name: str, until_ns: int) -> Table:
 
 
 def _start(entry: StartEntry) -> Sequence[str | int | float | None]:
-    start = entry.start
-    recorded = "in full" if start.is_from_rest and start.acceleration_s is not None else "in part"
+    start = entry.filled.figures
+    if entry.recording is None:
+        recorded = "report alone"
+    else:
+        is_whole = entry.start.is_from_rest and entry.start.acceleration_s is not None
+        recorded = "in full" if is_whole else "in part"
     return (
         entry.time_ns,
         start.acceleration_s,

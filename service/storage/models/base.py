@@ -32,6 +32,7 @@ from service.storage.states import (
     RecordingRequestState,
     RecordingSource,
     RecordingState,
+    StartSource,
 )
 
 
@@ -98,6 +99,7 @@ class Base(DeclarativeBase):
         RecordingRequestState: _words(RecordingRequestState),
         RecordingState: _words(RecordingState),
         RecordingSource: _words(RecordingSource),
+        StartSource: _words(StartSource),
         DeletedBy: _words(DeletedBy),
         JobState: _words(JobState),
         NotificationKind: _words(NotificationKind),

@@ -6,12 +6,17 @@ from sqlalchemy import Double, ForeignKey, Index, String
 from sqlalchemy.orm import Mapped, mapped_column
 
 from service.storage.models.base import Base
+from service.storage.states import StartSource
 
 
 class StartRow(Base):
     """What a recorded start shows (core.starts). curve: current and voltage over time.
 
+    recording_id: of a start that a report alone tells, an id made of motor and time.
+
     model: torque, parameters, sideband and stress; null for what an earlier version measured.
+
+    report: what the relay's motor start report tells of the same start; null where none was brought.
 
     It outlives a recording that a rule of retention deletes, because later starts are compared with it.
     """
@@ -33,6 +38,8 @@ class StartRow(Base):
     rated_voltage_V: Mapped[float] = mapped_column(Double)
     curve: Mapped[Mapping[str, object]]
     model: Mapped[Mapping[str, object] | None]
+    source: Mapped[StartSource] = mapped_column(server_default=StartSource.RECORDING)
+    report: Mapped[Mapping[str, object] | None]
 
     __table_args__ = (
         Index("ix_starts_motor_time_ns_recording_id", "motor", "time_ns", "recording_id"),

@@ -78,7 +78,7 @@ from service.storage.records.relays import (
     RelayFindings,
 )
 from service.storage.records.rotor_and_supply import RotorEntry, SupplyEntry
-from service.storage.records.starts import StartEntry
+from service.storage.records.starts import ImportedStart, ReportedStart, ReportOutcome, StartEntry
 
 __all__ = [
     "SERVICE",
@@ -122,6 +122,7 @@ __all__ = [
     "GatewayEntry",
     "Gathering",
     "IedEntry",
+    "ImportedStart",
     "Job",
     "JobResult",
     "LatestDiagnosis",
@@ -151,6 +152,8 @@ __all__ = [
     "RecordingRequest",
     "RelayFindings",
     "RemoteRecord",
+    "ReportOutcome",
+    "ReportedStart",
     "Role",
     "RotorEntry",
     "Sample",

@@ -40,7 +40,7 @@ class ComparedStart:
     @property
     def too_often(self) -> bool:
         """Whether there were more starts within an hour than the motor file allows."""
-        stress = self.entry.examined.stress
+        stress = self.entry.filled.stress
         allowed = None if stress is None else stress.starts_per_hour
         return allowed is not None and self.within_hour > allowed
 
@@ -142,6 +142,8 @@ def compared(entry: StartEntry, reference: StartEntry | None) -> ComparedStart:
     """Return a start beside the reference. A part of a start tells nothing of how long a whole one takes."""
     if reference is None or entry.recording_id == reference.recording_id:
         return ComparedStart(entry, is_reference=reference is not None)
+    if entry.source is not reference.source:
+        return ComparedStart(entry)
     mine, first = entry.start, reference.start
     is_whole = mine.acceleration_s is not None
     return ComparedStart(

@@ -14,6 +14,7 @@ from core.recordings.cev.compressed_ascii import closed
 from core.relay_reports import (
     ReportError,
     StateChange,
+    other_report,
     read_load_profile,
     read_motor_starts,
     read_motor_statistics,
@@ -104,6 +105,19 @@ def test_dates_are_in_the_order_of_the_relays_setting() -> None:
         report = SER.replace("03/29/2026 10", f"{date} 10").replace("4     03/28", "5     ")
         report = "\n".join(line for line in report.splitlines() if not line.startswith("5"))
         assert read_sequence_of_events(report, date_order=order)[0].time_ns == STARTED_NS
+
+
+@pytest.mark.parametrize(
+    ("report", "word"),
+    [(SER.encode(), "SER"), (CSER, "SER"), (LDP.encode(), "LDP"), (CLDP, "LDP"), (MOT.encode(), "MOT")],
+)
+def test_another_report_is_told_by_its_name(report: bytes, word: str) -> None:
+    assert f"({word})" in str(other_report(report))
+
+
+def test_no_other_report_is_seen_in_a_motor_start_report() -> None:
+    for report in (MSR, MSR_BY_PHASE, MSR.replace("7.10", "x"), "hello"):
+        assert other_report(report.encode()) is None
 
 
 def test_a_file_is_read_like_its_text(tmp_path: Path) -> None:

@@ -18,9 +18,10 @@ from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from testing.service.conditions import FAULT, tell
 from testing.service.job_runner import RUNNER
-from testing.service.plants import NOW_NS, SECOND_NS, fault, healthy
+from testing.service.plants import NOW_NS, SECOND_NS, fault, healthy, motor
 from testing.service.small_record import CFG, DAT
 from testing.service.starts import START, RecordedStarts
+from tests.core.relay_reports.examples import LDP, MSR
 from tests.service.api.serving import serving
 from tests.service.fixtures import database_url, engine, repository, store
 
@@ -49,7 +50,9 @@ def recorded(repository: Repository, store: RecordingStore) -> list[str]:
 
 @pytest.fixture
 def client(repository: Repository, store: RecordingStore, tmp_path: Path) -> Iterator[httpx.Client]:
-    with serving(create_app(ApiContext(Settings(data_directory=tmp_path), repository, store))) as client:
+    motors = {"PUMP-A1": motor("PUMP-A1")}
+    context = ApiContext(Settings(data_directory=tmp_path), repository, store, motors=motors)
+    with serving(create_app(context)) as client:
         yield client
 
 
@@ -82,6 +85,26 @@ def test_starts(mcc: Mcc, repository: Repository, store: RecordingStore) -> None
     assert [one["acceleration_s"] for one in found] == [2.0]
     assert [one["is_reference"] for one in rows(mcc("starts", "PUMP-A1", "--csv"))][:1] == ["True"]
     assert mcc("starts", "FAN-A2") == "no starts\n"
+
+
+def test_starts_of_a_report(mcc: Mcc, tmp_path: Path) -> None:
+    report = tmp_path / "MSR.TXT"
+    report.write_text(MSR, encoding="ascii")
+    first, second = mcc("starts", "PUMP-A1", "--import", str(report)).splitlines()
+    assert "10:15:01 UTC: a start that was not recorded (" in first
+    assert "08:00:00 UTC: left out:" in second
+    assert "was there already" in mcc("starts", "PUMP-A1", "--import", str(report))
+    told = json.loads(mcc("starts", "PUMP-A1", "--import", str(report), "--json"))
+    assert [one["outcome"] for one in told["starts"]] == ["known"]
+    [start] = rows(mcc("starts", "PUMP-A1", "--csv"))
+    assert (start["source"], start["acceleration_s"], start["recording_id"]) == ("report", "0.3", "")
+
+    report.write_text(LDP, encoding="ascii")
+    assert "found a load profile (LDP)" in mcc("starts", "PUMP-A1", "--import", str(report), ends=1)
+    report.write_text(MSR.replace("7.10", "x"), encoding="ascii")
+    refused = " ".join(mcc("starts", "PUMP-A1", "--import", str(report), ends=1).split())
+    assert "line 13, I(A): expected a number, found 'x'" in refused
+    assert "expected a file" in mcc("starts", "PUMP-A1", "--import", str(tmp_path / "none"), ends=1)
 
 
 def test_a_trend(mcc: Mcc, recorded: list[str]) -> None:

@@ -1,12 +1,65 @@
-"""What a model tells of a start, read back from the document that is stored."""
+"""Starts as they are stored: figures in columns; curve, model and the relay's report as documents."""
 
+import json
 from collections.abc import Mapping
+from dataclasses import asdict
 from typing import Any
 
 from core.rotor.finding import RotorState
 from core.rotor.start_finding import StartSideband
 from core.starts.examined import ExaminedStart, StartParameters, StartStress, StartTorque
-from core.starts.figures import MotorStart
+from core.starts.figures import MotorStart, StartCurve
+from service.storage.models import StartRow
+from service.storage.records import ReportedStart
+from service.storage.states import StartSource
+
+FIGURES = (
+    "is_from_rest",
+    "acceleration_s",
+    "peak_current_A",
+    "crest_current_A",
+    "running_current_A",
+    "lowest_voltage_V",
+    "i2t_A2s",
+    "i2t_over_s",
+    "rated_current_A",
+    "rated_voltage_V",
+)
+"""Columns that are called as the fields of a MotorStart are."""
+
+
+def start_row(recording_id: str, motor: str, time_ns: int, start: ExaminedStart) -> StartRow:
+    """Return the row of a recorded start."""
+    model = start.model_as_dict()
+    return StartRow(
+        recording_id=recording_id,
+        motor=motor,
+        time_ns=time_ns,
+        curve=asdict(start.figures.curve),
+        model=model if _is_storable(model) else None,
+        source=StartSource.RECORDING,
+        **{name: getattr(start.figures, name) for name in FIGURES},
+    )
+
+
+def report_document(start: ReportedStart) -> Mapping[str, Any]:
+    """Return what a relay reports of a start as the database gives it back."""
+    figures = asdict(start.examined.figures)
+    document = {"time_ns": start.time_ns, "figures": figures, "model": start.examined.model_as_dict()}
+    stored: Mapping[str, Any] = json.loads(json.dumps(document, allow_nan=False))
+    return stored
+
+
+def reported_start(document: Mapping[str, Any]) -> ReportedStart:
+    """Return what a relay reports of a start."""
+    figures = dict(document["figures"])
+    start = start_figures(figures, figures.pop("curve"))
+    return ReportedStart(document["time_ns"], examined_start(start, document["model"]))
+
+
+def start_figures(figures: Mapping[str, Any], curve: Mapping[str, Any]) -> MotorStart:
+    """Return the figures of a start with its curve."""
+    return MotorStart(**figures, curve=StartCurve(**_with_tuples(curve)))
 
 
 def examined_start(figures: MotorStart, document: Mapping[str, Any] | None) -> ExaminedStart:
@@ -43,3 +96,12 @@ def _state(document: Mapping[str, Any]) -> dict[str, RotorState]:
 
 def _with_tuples(document: Mapping[str, Any]) -> dict[str, Any]:
     return {name: tuple(value) if isinstance(value, list) else value for name, value in document.items()}
+
+
+def _is_storable(model: Mapping[str, object]) -> bool:
+    """Return whether a document has nothing but numbers in it that JSON has, too."""
+    try:
+        json.dumps(model, allow_nan=False)
+    except ValueError:
+        return False
+    return True

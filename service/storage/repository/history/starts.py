@@ -1,8 +1,6 @@
-"""Recorded starts: kept with the diagnosis of their recording, and listed."""
+"""Starts: recorded ones are kept with the diagnosis of their recording; all are listed."""
 
-import json
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict
+from collections.abc import Sequence
 from math import isfinite
 from typing import Any
 
@@ -12,27 +10,21 @@ from sqlalchemy.orm import Session
 from core.operation import Operation
 from core.starts.changes import REFERENCE_STARTS
 from core.starts.examined import ExaminedStart
-from core.starts.figures import MotorStart, StartCurve
+from core.starts.figures import MotorStart
 from service.storage.errors import NotFoundError
 from service.storage.models import MotorRow, RecordingRow, StartRow
 from service.storage.records import Cursor, Page, StartEntry
 from service.storage.repository.conditions.tracking import follow_again, followed_start
-from service.storage.repository.history.start_documents import examined_start
-from service.storage.repository.sessions import Order, Sessions, found, page_of
-
-_FIGURES = (
-    "is_from_rest",
-    "acceleration_s",
-    "peak_current_A",
-    "crest_current_A",
-    "running_current_A",
-    "lowest_voltage_V",
-    "i2t_A2s",
-    "i2t_over_s",
-    "rated_current_A",
-    "rated_voltage_V",
+from service.storage.repository.history.start_documents import (
+    FIGURES,
+    examined_start,
+    reported_start,
+    start_figures,
+    start_row,
 )
-"""Columns that are called as the fields of a MotorStart are."""
+from service.storage.repository.history.start_reports import leave_report, take_report
+from service.storage.repository.sessions import Order, Sessions, found, page_of
+from service.storage.states import StartSource
 
 LOOKED_AT = 10 * REFERENCE_STARTS
 """Starts among which the first whole ones are looked for."""
@@ -42,7 +34,7 @@ class StartRows(Sessions):
     def starts(
         self, motor: str | None = None, *, limit: int, after: Cursor | None = None
     ) -> Page[StartEntry]:
-        """Return the recorded starts of a motor or of all, latest first. Raises NotFoundError."""
+        """Return the starts of a motor or of all, latest first. Raises NotFoundError."""
         query = select(StartRow)
         if motor is not None:
             query = query.where(StartRow.motor == motor)
@@ -53,7 +45,7 @@ class StartRows(Sessions):
             return page_of(session, query, order, _entry, limit=limit, after=after, descending=True)
 
     def start(self, motor: str, recording_id: str) -> StartEntry:
-        """Return what one recording shows of a start of a motor. Raises NotFoundError."""
+        """Return one start of a motor. Raises NotFoundError."""
         with self._read() as session:
             found(session, MotorRow, motor, "motor")
             row = session.get(StartRow, recording_id)
@@ -71,14 +63,16 @@ class StartRows(Sessions):
         with self._read() as session:
             return session.scalars(query).all()
 
-    def first_whole_starts(self, motor: str, *, from_ns: int) -> Sequence[StartEntry]:
-        """Return the first few starts of a motor from a time on that were recorded from rest to speed.
+    def first_whole_starts(
+        self, motor: str, *, from_ns: int, source: StartSource = StartSource.RECORDING
+    ) -> Sequence[StartEntry]:
+        """Return the first few starts of a motor from a time on that are told from rest to speed.
 
-        They are looked for among the first `LOOKED_AT` starts, however many a motor has.
+        They are looked for among the first `LOOKED_AT` of that source, however many a motor has.
         """
         query = (
             select(StartRow)
-            .where(StartRow.motor == motor, StartRow.time_ns >= from_ns)
+            .where(StartRow.motor == motor, StartRow.time_ns >= from_ns, StartRow.source == source)
             .order_by(StartRow.time_ns, StartRow.recording_id)
             .limit(LOOKED_AT)
         )
@@ -108,58 +102,35 @@ def keep_start(
         return
     if followed_start(time_ns, start.parameters) is not None:
         follow_again(session, motor, time_ns)
-    figures = {name: getattr(start.figures, name) for name in _FIGURES}
-    model = start.model_as_dict()
-    session.add(
-        StartRow(
-            recording_id=recording_id,
-            motor=motor,
-            time_ns=time_ns,
-            curve=asdict(start.figures.curve),
-            model=model if _is_storable(model) else None,
-            **figures,
-        )
-    )
+    session.flush()
+    row = start_row(recording_id, motor, time_ns, start)
+    take_report(session, row)
+    session.add(row)
 
 
 def forget_start(session: Session, recording_id: str) -> None:
-    """Delete what a recording showed of a start."""
+    """Delete what a recording showed of a start; what the relay's report tells of it stays."""
     row = session.get(StartRow, recording_id)
     if row is None:
         return
     if row.model is not None:
         follow_again(session, row.motor, row.time_ns)
     session.execute(delete(StartRow).where(StartRow.recording_id == recording_id))
-
-
-def _is_storable(model: Mapping[str, object]) -> bool:
-    """Return whether a document has nothing but numbers in it that JSON has, too."""
-    try:
-        json.dumps(model, allow_nan=False)
-    except ValueError:
-        return False
-    return True
+    leave_report(session, row)
 
 
 def _is_finite(start: MotorStart) -> bool:
     """Return whether all figures are numbers: samples near the largest number have no square."""
     curve = start.curve
-    figures = [getattr(start, name) for name in _FIGURES]
+    figures = [getattr(start, name) for name in FIGURES]
     known = [one for one in (*figures, *curve.current_A, *(curve.voltage_V or ())) if one is not None]
     return all(map(isfinite, known))
 
 
 def _entry(row: StartRow, *_: object) -> StartEntry:
-    figures: dict[str, Any] = {name: getattr(row, name) for name in _FIGURES}
-    start = MotorStart(**figures, curve=_curve(row.curve))
-    return StartEntry(row.recording_id, row.motor, row.time_ns, examined_start(start, row.model))
-
-
-def _curve(document: Mapping[str, Any]) -> StartCurve:
-    volts = document["voltage_V"]
-    return StartCurve(
-        document["first_s"],
-        document["step_s"],
-        tuple(document["current_A"]),
-        None if volts is None else tuple(volts),
-    )
+    figures: dict[str, Any] = {name: getattr(row, name) for name in FIGURES}
+    examined = examined_start(start_figures(figures, row.curve), row.model)
+    # The row of a report that has no recording says the same.
+    told = row.report if row.source is StartSource.RECORDING else None
+    reported = None if told is None else reported_start(told).examined
+    return StartEntry(row.recording_id, row.motor, row.time_ns, examined, row.source, reported)

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import pytest
 
 from service.api import create_app
+from tests.core.relay_reports.examples import MSR
 from tests.service.audited import API, MOTOR, PASSWORD, SHELVED, Changes, Prepared, audited_service, sent
 
 CHANGING = {"post", "put", "patch", "delete"}
@@ -75,6 +76,12 @@ REQUESTS: Changes = {
     "POST /api/v1/recordings": (
         lambda it: it.client.post(f"{API}/recordings", data={"motor": "PUMP-A1"}, files=it.files()),
         "recording-uploaded",
+    ),
+    "POST /api/v1/motors/{name}/starts/reports": (
+        lambda it: it.client.post(
+            f"{MOTOR}/starts/reports", content=MSR, headers={"Content-Type": "text/plain"}
+        ),
+        "starts-imported",
     ),
     "DELETE /api/v1/recordings/{recording_id}": (
         lambda it: it.client.delete(f"{API}/recordings/{it.recording()}", params={"reason": "a test"}),

@@ -11,7 +11,7 @@ from core.starts.examining import examine_start
 from core.starts.figures import MotorStart
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
-from service.storage.records import Actor
+from service.storage.records import Actor, ReportedStart
 from testing.machines.motors import MEDIUM
 from testing.machines.starts import StartRecord
 from testing.service.plants import NOW_NS, SECOND_NS
@@ -141,6 +141,24 @@ def test_starts_without_figures_are_told(client: httpx.Client, recorded: Recorde
 
 
 def test_without_starts_the_pages_say_so(client: httpx.Client) -> None:
-    assert "No start was recorded yet" in client.get("/starts").text
-    assert "No start of this motor was recorded yet" in client.get(HERE).text
+    assert "No start is known yet" in client.get("/starts").text
+    assert "No start of this motor is known yet" in client.get(HERE).text
     assert client.get("/motors/NO-SUCH/starts").status_code == 404
+
+
+def test_pages_show_what_tells_of_a_start(
+    client: httpx.Client, recorded: RecordedStarts, repository: Repository
+) -> None:
+    whole = ExaminedStart(START)
+    recording_id = recorded.add(replace(START, acceleration_s=None), at_ns=NOW_NS)
+    reports = [ReportedStart(at_ns, whole) for at_ns in (NOW_NS + SECOND_NS, NOW_NS + 60 * SECOND_NS)]
+    repository.add_reported_starts("PUMP-A1", reports, by=ADA, now_ns=NOW_NS)
+
+    for here in (HERE, "/starts"):
+        document = page(client.get(here))
+        alone, joined = words(document, "tbody tr")
+        assert "UTCreport 1.25 s" in alone.replace("UTC ", "UTC")
+        assert "recording, with report" in joined
+        assert "1.25 s" in joined
+        linked = addresses(document, "tbody tr a")
+        assert [one for one in linked if "recordings" in one] == [f"/recordings/{recording_id}"]
