@@ -43,5 +43,6 @@ class StartRow(Base):
 
     __table_args__ = (
         Index("ix_starts_motor_time_ns_recording_id", "motor", "time_ns", "recording_id"),
+        Index("ix_starts_motor_source_time_ns_recording_id", "motor", "source", "time_ns", "recording_id"),
         Index("ix_starts_time_ns_recording_id", "time_ns", "recording_id"),
     )
