@@ -23,6 +23,8 @@ WARM_C: Final = 60.0
 """About the temperature of a winding in the first records [degree C]: it only scales a rise."""
 SCALE_SPREAD: Final = 0.1
 """Half the interval of a rise's scale."""
+NOTHING_LEFT: Final = -1.0
+"""Change that leaves nothing of a parameter: no motor has one below, whatever happens to it."""
 HELPS: Final = 0.9
 """Share of the interval that a record has to leave at most, to be worth naming."""
 
@@ -46,7 +48,7 @@ def tracked_parameters(follower: Follower) -> TrackedParameters:
         state = TrackingState.DRIFTING
     else:
         state = TrackingState.STEADY if TrackingState.STEADY in states else TrackingState.UNDETERMINED
-    drifting = [one.since_ns is not None for one in follower.drifts]
+    drifting = [told[name].since_ns is not None for name in FOLLOWED]
     causes = possible_causes(*follower.changes, drifting)
     excess_K, interval_K = _winding_excess_K(follower)
     reasons = [f"{one.name.words} {_percent(one.change)}" for one in told.values() if one.change is not None]
@@ -73,7 +75,9 @@ def _parameter(follower: Follower, place: int) -> TrackedParameter:
     change, half = float(changes[place]), NORMAL_95 * sqrt(covariance[place, place])
     known = follower.has_reference and half <= WIDEST[place]
     reasons: tuple[str, ...] = ()
-    if since_ns is not None:
+    if np.any(changes <= NOTHING_LEFT):
+        state, since_ns, reasons = TrackingState.UNDETERMINED, None, (_impossible_reason(changes),)
+    elif since_ns is not None:
         state, reasons = TrackingState.DRIFTING, (_drift_reason(change, half),)
     elif known:
         state = TrackingState.STEADY
@@ -97,6 +101,14 @@ def _parameter(follower: Follower, place: int) -> TrackedParameter:
         state=state,
         since_ns=since_ns,
         reasons=reasons,
+    )
+
+
+def _impossible_reason(changes: Array) -> str:
+    name = FOLLOWED[int(np.argmin(changes))]
+    return (
+        f"no motor explains the records: by them less than nothing would be left of the {name.words}; "
+        "check the channels, their ratios and the motor file"
     )
 
 

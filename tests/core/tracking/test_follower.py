@@ -1,5 +1,6 @@
 """Parameters followed over records of motors that are solved by phasors of three windings."""
 
+import cmath
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -18,6 +19,8 @@ from core.tracking.telling import tracked_parameters
 
 FIRST, RECORDS = 120, 320
 CHANGED = FIRST + 20
+TIMING_ERROR = 0.2
+"""Of current channels that a merge has shifted against those of the voltages [rad]."""
 Happening = Callable[[SimulatedMotor, Operation, Course], tuple[Operation, Course]]
 
 
@@ -204,3 +207,16 @@ def test_impossible_records_do_not_count() -> None:
     assert not follower.follow(replace(observations[40], positive_current_A=complex("nan")))
     assert not follower.follow(replace(observations[40], positive_current_A=0j))
     assert document_of(follower) == before
+
+
+def test_records_of_no_motor_are_no_drift() -> None:
+    motor, observations = records(nothing)
+    late = cmath.exp(TIMING_ERROR * 1j)
+    others = [replace(one, positive_current_A=late * one.positive_current_A) for one in observations[FIRST:]]
+    found = tracked_parameters(followed(motor, [*observations[:FIRST], *others]))
+    assert found.state is TrackingState.UNDETERMINED
+    assert found.causes == ()
+    for one in found.parameters:
+        assert (one.state, one.value, one.since_ns) == (TrackingState.UNDETERMINED, None, None)
+        assert one.reasons[0].startswith("no motor explains the records: by them less than nothing")
+        assert "check the channels, their ratios and the motor file" in one.reasons[0]
