@@ -362,6 +362,8 @@ class Server:
             if self._lib.IedServer_getNumberOfOpenConnections(self._server) == 0:
                 return False
             self._process_incoming()
+            # A command that came in that millisecond is carried out now, not in the next turn.
+            self._lib.IedServer_performPeriodicTasks(self._server)
             return True
 
     def _process_incoming(self) -> None:
