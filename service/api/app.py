@@ -13,7 +13,7 @@ from service.access.permissions import Permission
 from service.api import probes, problems
 from service.api.access import sessions, tokens, users
 from service.api.access.gate import Gate
-from service.api.access.requirements import require, requirement_of
+from service.api.access.requirements import RouteNeeds, require, requirement_of
 from service.api.alarms import lists as alarm_lists
 from service.api.alarms import people as alarm_people
 from service.api.audit import trail as audit_trail
@@ -133,14 +133,14 @@ def _add_sign_on(api: APIRouter, settings: OidcSettings) -> None:
     api.include_router(sign_on_router(OpenIdProvider(settings)))
 
 
-def _needs(app: FastAPI) -> Mapping[Route, Permission | None]:
-    """Return what each route with a fixed path needs of its caller; None where it answers anybody."""
-    return {
-        (method, route.path): requirement_of(route.dependencies)
+def _needs(app: FastAPI) -> RouteNeeds:
+    """Return what each route needs of its caller."""
+    return RouteNeeds(
+        (method, route.path, requirement_of(route.dependencies))
         for route in iter_route_contexts(app.routes)
-        if isinstance(route.original_route, APIRoute) and route.path is not None and "{" not in route.path
+        if isinstance(route.original_route, APIRoute) and route.path is not None
         for method in route.methods or ()
-    }
+    )
 
 
 def _complete_document(app: FastAPI, limits: Mapping[Route, int]) -> None:

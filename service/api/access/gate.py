@@ -5,7 +5,6 @@ the cookie of a session. While there are no users, whoever is on this machine ma
 """
 
 import time
-from collections.abc import Mapping
 from http import HTTPStatus
 
 import structlog
@@ -16,12 +15,13 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 from structlog.typing import FilteringBoundLogger
 
 from service.access.identities import Identity, Way, identity_of_session, identity_of_token
-from service.access.permissions import PERMISSIONS_OF, Permission
+from service.access.permissions import PERMISSIONS_OF
 from service.access.proxied import ProxiedUserError, identity_of_proxied
 from service.api.access.callers import FIRST_USER, SCOPE_KEY, Caller
 from service.api.access.client_address import ClientAddress, client_address
 from service.api.access.cookies import session_secret
 from service.api.access.refusals import refuse
+from service.api.access.requirements import RouteNeeds
 from service.api.context import ApiContext
 from service.api.problems import ProblemError, database_response, problem_response
 from service.storage.records import Actor, Role
@@ -45,23 +45,16 @@ CHALLENGE = {"WWW-Authenticate": 'Bearer realm="statorwatch"'}
 
 
 class Gate:
-    """ASGI middleware. `needs`: what routes need, by method and path; None where they answer anybody.
+    """ASGI middleware. `needs`: what routes need. Each route asks its caller itself, too, after its body."""
 
-    Routes that are not among them ask their caller themselves, as all do; these are asked for before a body
-    is read, such as an upload.
-    """
-
-    def __init__(
-        self, app: ASGIApp, *, context: ApiContext, needs: Mapping[tuple[str, str], Permission | None]
-    ) -> None:
+    def __init__(self, app: ASGIApp, *, context: ApiContext, needs: RouteNeeds) -> None:
         self._app = app
         self._context = context
         self._needs = needs
-        self._open_paths = frozenset(path for (_, path), needed in needs.items() if needed is None)
         self._had_users = False
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        if scope["type"] != "http" or scope["path"] in self._open_paths:
+        if scope["type"] != "http" or scope["path"] in self._needs.open_paths:
             await self._app(scope, receive, send)
             return
         try:
@@ -84,7 +77,7 @@ class Gate:
             identity = self._nobody(scope["method"], origin)
         actor = Actor(identity.name, origin.address, identity.roles)
         caller = Caller(actor, identity.permissions, identity.way, identity.session, identity.token)
-        needed = self._needs.get((scope["method"], scope["path"]))
+        needed = self._needs.of(scope["method"], scope["path"])
         if needed is not None:
             caller.demand(needed)
         return caller

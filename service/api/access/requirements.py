@@ -1,9 +1,11 @@
 """What a route needs of its caller. Every route declares it; a test fails for one that does not."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from re import Pattern
 from typing import Any
 
 from fastapi import Depends, Request, params
+from starlette.routing import compile_path
 
 from service.access.permissions import Permission
 from service.api.access.callers import caller_of
@@ -45,3 +47,32 @@ def requirement_of(dependencies: Sequence[params.Depends]) -> Permission | None:
         if dependency.dependency is _nothing:
             return None
     raise LookupError("expected a route with require(Permission....) or open_to_all() in its dependencies")
+
+
+class RouteNeeds:
+    """What each route needs of its caller, by method and path: known before anything is read of a body.
+
+    Parameters
+    ----------
+    routes
+        Method, path with its parameters in braces, and the permission; None for a route that is open to all.
+    """
+
+    def __init__(self, routes: Iterable[tuple[str, str, Permission | None]]) -> None:
+        fixed: dict[tuple[str, str], Permission | None] = {}
+        patterns: dict[str, list[tuple[Pattern[str], Permission | None]]] = {}
+        for method, path, needed in routes:
+            if "{" in path:
+                patterns.setdefault(method, []).append((compile_path(path)[0], needed))
+            else:
+                fixed[method, path] = needed
+        self._fixed = fixed
+        self._patterns: Mapping[str, Sequence[tuple[Pattern[str], Permission | None]]] = patterns
+        self.open_paths = frozenset(path for (_, path), needed in fixed.items() if needed is None)
+
+    def of(self, method: str, path: str) -> Permission | None:
+        """Return what the route of a request needs; None where there is none, or one that is open to all."""
+        if (method, path) in self._fixed:
+            return self._fixed[method, path]
+        matching = (needed for pattern, needed in self._patterns.get(method, ()) if pattern.match(path))
+        return next(matching, None)
