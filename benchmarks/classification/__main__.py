@@ -1,12 +1,9 @@
-"""Causes told apart: python -m benchmarks.classification [--quick] [--measured FOLDER]."""
+"""Causes told apart: python -m benchmarks.classification [--quick] [--data FOLDER]."""
 
-import argparse
-import os
-from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 from benchmarks.classification import confusion, measured
-from benchmarks.reporting import Section, write_sections
+from benchmarks.page_of_subjects import PageOfSubjects
 
 PAGE = Path("docs/evidence/classification.md")
 PREAMBLE = """# Causes told apart
@@ -22,30 +19,8 @@ was changed: the torque takes in what an uneven air gap pulls.
 
 One record does not tell what the load was before; that cause is told over a motor's records alone.
 """
-SUBJECTS = ("confusion", "measured")
+SUBJECTS = {"confusion": confusion.sections}
 ORDER = ("single", "pairs", "measured")
 
-
-def main() -> None:
-    """Measure the subjects, and put them into the page unless they are quick ones."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--quick", action="store_true", help="few cases, printed and not written")
-    parser.add_argument("--subject", choices=SUBJECTS, action="append", help="only this one")
-    parser.add_argument("--measured", type=Path, help="folder of the measured sets; left out without it")
-    parser.add_argument("--workers", type=int, default=os.cpu_count() or 1)
-    options = parser.parse_args()
-    subjects = options.subject or SUBJECTS
-    sections: list[Section] = []
-    with ProcessPoolExecutor(options.workers) as pool:
-        if "confusion" in subjects:
-            sections += confusion.sections(pool, quick=options.quick)
-        if "measured" in subjects and options.measured is not None:
-            sections += measured.sections(options.measured, pool)
-    if options.quick:
-        print("\n".join(section.text() for section in sections))
-    else:
-        write_sections(PAGE, PREAMBLE, ORDER, sections)
-
-
 if __name__ == "__main__":
-    main()
+    PageOfSubjects(PAGE, PREAMBLE, SUBJECTS, measured.sections, ORDER).measure(__doc__)

@@ -55,7 +55,7 @@ class Said:
 def sections(folder: Path, pool: Executor) -> list[Section]:
     """The answers to both sets."""
     lines = [*_mill(folder, pool), "", *_itsc(folder, pool)]
-    command = "python -m benchmarks.classification --subject measured --measured FOLDER"
+    command = "python -m benchmarks.classification --data FOLDER"
     return [Section("measured", "Measured records", command, tuple(lines))]
 
 

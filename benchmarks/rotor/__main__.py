@@ -1,11 +1,8 @@
 """Broken rotor bars: python -m benchmarks.rotor [--quick] [--subject SUBJECT] [--data FOLDER]."""
 
-import argparse
-import os
-from concurrent.futures import Executor, ProcessPoolExecutor
 from pathlib import Path
 
-from benchmarks.reporting import Section, write_sections
+from benchmarks.page_of_subjects import PageOfSubjects
 from benchmarks.rotor import detection, false_alarms, leakage, measured, one_phase, sideband_figure, speed
 
 PAGE = Path("docs/evidence/rotor.md")
@@ -32,32 +29,5 @@ SUBJECTS = {
     "speed": speed.sections,
 }
 
-MEASURED = "measured"
-
-
-def main() -> None:
-    """Measure the subjects, and put them into the page unless they are quick ones."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--quick", action="store_true", help="few cases, printed and not written")
-    parser.add_argument("--subject", choices=SUBJECTS, action="append", help="only this one")
-    parser.add_argument("--data", type=Path, help="folder of measured recordings: these alone")
-    parser.add_argument("--workers", type=int, default=os.cpu_count() or 1)
-    options = parser.parse_args()
-    sections: list[Section] = []
-    with ProcessPoolExecutor(options.workers) as pool:
-        if options.data is not None:
-            sections += measured.sections(options.data, pool)
-        for name in options.subject or (SUBJECTS if options.data is None else ()):
-            sections += _of(name, pool, quick=options.quick)
-    if options.quick:
-        print("\n".join(section.text() for section in sections))
-    else:
-        write_sections(PAGE, PREAMBLE, [*SUBJECTS, MEASURED], sections)
-
-
-def _of(name: str, pool: Executor, *, quick: bool) -> list[Section]:
-    return SUBJECTS[name](pool, quick=quick)
-
-
 if __name__ == "__main__":
-    main()
+    PageOfSubjects(PAGE, PREAMBLE, SUBJECTS, measured.sections).measure(__doc__)

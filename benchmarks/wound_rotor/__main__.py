@@ -1,11 +1,8 @@
 """Motors with a wound rotor, simulated: python -m benchmarks.wound_rotor [--quick] [--subject SUBJECT]."""
 
-import argparse
-import os
-from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
-from benchmarks.reporting import Section, write_sections
+from benchmarks.page_of_subjects import PageOfSubjects
 from benchmarks.wound_rotor import false_alarms, rings, stator, winding
 
 PAGE = Path("docs/evidence/other-machines.md")
@@ -25,23 +22,5 @@ SUBJECTS = {
     "false-alarms": false_alarms.sections,
 }
 
-
-def main() -> None:
-    """Measure the subjects, and put them into the page unless they are quick ones."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--quick", action="store_true", help="few cases, printed and not written")
-    parser.add_argument("--subject", choices=SUBJECTS, action="append", help="only this one")
-    parser.add_argument("--workers", type=int, default=os.cpu_count() or 1)
-    options = parser.parse_args()
-    sections: list[Section] = []
-    with ProcessPoolExecutor(options.workers) as pool:
-        for name in options.subject or SUBJECTS:
-            sections += SUBJECTS[name](pool, quick=options.quick)
-    if options.quick:
-        print("\n".join(section.text() for section in sections))
-    else:
-        write_sections(PAGE, PREAMBLE, list(SUBJECTS), sections)
-
-
 if __name__ == "__main__":
-    main()
+    PageOfSubjects(PAGE, PREAMBLE, SUBJECTS).measure(__doc__)

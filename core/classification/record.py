@@ -128,7 +128,7 @@ def _verdicts(examined: Examined) -> tuple[Verdict, ...]:
     if diagnosis.verdict is DiagnosisVerdict.HEALTHY:
         found.append(Verdict(turns, is_there=False, words="no shorted turns"))
     if rotor.state is RotorState.FAULT:
-        found.append(Verdict(cage, is_there=True, words="fault of the rotor, broken bars or end ring"))
+        found.append(Verdict(cage, is_there=True, words="fault of the rotor"))
     if rotor.state is RotorState.HEALTHY:
         found.append(Verdict(cage, is_there=False, words="an even rotor"))
     return tuple(found)

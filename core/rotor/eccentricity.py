@@ -61,14 +61,14 @@ class EccentricityFinding:
         What limits the figures, in words.
     """
 
-    permeance_ripple: float | None
-    standard_deviation: float | None
-    detection_limit: float | None
-    lower_sideband_dB: float | None
-    upper_sideband_dB: float | None
-    load_torque: float | None
-    load_torque_deviation: float | None
-    rotation_frequency_hz: float | None
+    permeance_ripple: float | None = None
+    standard_deviation: float | None = None
+    detection_limit: float | None = None
+    lower_sideband_dB: float | None = None
+    upper_sideband_dB: float | None = None
+    load_torque: float | None = None
+    load_torque_deviation: float | None = None
+    rotation_frequency_hz: float | None = None
     reasons: tuple[str, ...] = ()
 
     @classmethod
@@ -85,7 +85,7 @@ class EccentricityFinding:
         EccentricityFinding
             The finding.
         """
-        return cls(None, None, None, None, None, None, None, None, (reason,))
+        return cls(reasons=(reason,))
 
     def as_dict(self) -> dict[str, object]:
         """Return the part `eccentricity` of the document that `mcc diagnose --json` prints.

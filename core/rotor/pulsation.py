@@ -48,9 +48,9 @@ class PulsationFinding:
         What limits the figures, in words.
     """
 
-    load_torque: float | None
-    noise: float | None
-    frequency_hz: float | None
+    load_torque: float | None = None
+    noise: float | None = None
+    frequency_hz: float | None = None
     reasons: tuple[str, ...] = ()
 
     @classmethod
@@ -67,7 +67,7 @@ class PulsationFinding:
         PulsationFinding
             The finding.
         """
-        return cls(None, None, None, (reason,))
+        return cls(reasons=(reason,))
 
     def as_dict(self) -> dict[str, object]:
         """Return the part `pulsation` of the document that `mcc diagnose --json` prints.

@@ -368,10 +368,8 @@ class Server:
 
     def _process_incoming(self) -> None:
         """Accept, read and answer. A TLS handshake is waited for, with everything else at a standstill."""
-        ours = self.address, self.port
-        with (
-            nullcontext() if self._tls is None else end_connections_after(ours, self._tls_handshake_timeout_s)
-        ):
+        own, limit_s = (self.address, self.port), self._tls_handshake_timeout_s
+        with nullcontext() if self._tls is None else end_connections_after(own, limit_s):
             self._lib.IedServer_processIncomingData(self._server)
 
     @property

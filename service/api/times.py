@@ -3,11 +3,12 @@
 import re
 from typing import Annotated
 
+from fastapi import Query
 from pydantic import BeforeValidator, WithJsonSchema
 
 from core.time_stamps import MAX_LENGTH, MAX_NS, nanoseconds, rfc3339
 
-__all__ = ["MAX_NS", "Time", "TimeParameter", "nanoseconds", "rfc3339"]
+__all__ = ["MAX_NS", "From", "Time", "TimeParameter", "To", "nanoseconds", "rfc3339"]
 
 _SPACE_FOR_PLUS = re.compile(r":\d\d(\.\d+)? \d\d:\d\d$", re.ASCII)
 """What is left of the offset in 2026-01-31T12:00:00+01:00 where an address holds it as it is."""
@@ -43,3 +44,7 @@ TimeParameter = Annotated[
     ),
 ]
 """A time in a request is RFC 3339, or a date for its beginning in UTC, and becomes nanoseconds."""
+
+From = Annotated[TimeParameter | None, Query(alias="from", description="First time.")]
+To = Annotated[TimeParameter | None, Query(description="First time not to be included.")]
+"""The window of time of a list, both ends open by default."""

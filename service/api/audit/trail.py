@@ -14,7 +14,7 @@ from service.api.audit.schemas import AuditEntry, AuditState, AuditVerification
 from service.api.context import ApiContext, Context
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import WrongFieldError, problems
-from service.api.times import MAX_NS, TimeParameter
+from service.api.times import MAX_NS, From, To
 from service.audit.actions import AuditAction
 from service.audit.entries import Anchor, line
 from service.audit.verification import Verification, verify
@@ -39,8 +39,8 @@ def list_audit_entries(
     actor: Text = None,
     action: AuditAction | None = None,
     subject: Annotated[Text, Query(description="Name or id of what was changed.")] = None,
-    from_: Annotated[TimeParameter | None, Query(alias="from", description="First time.")] = None,
-    to: Annotated[TimeParameter | None, Query(description="First time not included.")] = None,
+    from_: From = None,
+    to: To = None,
     limit: Limit = DEFAULT_LIMIT,
     cursor: CursorText = None,
 ) -> Page[AuditEntry]:

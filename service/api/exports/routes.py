@@ -12,7 +12,7 @@ from service.api.access.requirements import require
 from service.api.context import ApiContext, Context
 from service.api.exports.answers import FILES, FileOnly
 from service.api.problems import problems
-from service.api.times import TimeParameter
+from service.api.times import From, To
 from service.exports import alarms, measurements, recordings, trends
 from service.plant import AveragingStep
 
@@ -30,8 +30,6 @@ Motors = Annotated[
     list[Annotated[str, StringConstraints(max_length=200)]] | None,
     Query(alias="motor", max_length=MOST_MOTORS, description="Only these, in this order; without: all."),
 ]
-From = Annotated[TimeParameter | None, Query(alias="from", description="First time.")]
-To = Annotated[TimeParameter | None, Query(description="First time not to be included.")]
 
 
 @router.get("/trend")

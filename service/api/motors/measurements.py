@@ -13,7 +13,7 @@ from service.api.document import Document, Name
 from service.api.exports.answers import FILES, ListAnswer
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
-from service.api.times import Time, TimeParameter
+from service.api.times import From, Time, To
 from service.exports import measurements as table
 from service.plant import AveragingStep, MeteredQuantity
 from service.storage.records import Measurement as StoredMeasurement
@@ -55,8 +55,8 @@ def list_measurements(
     step: Annotated[
         AveragingStep, Query(description="0: as sampled; 60, 900: means of so many seconds, kept for longer.")
     ] = AveragingStep.AS_SAMPLED,
-    from_: Annotated[TimeParameter | None, Query(alias="from", description="First time.")] = None,
-    to: Annotated[TimeParameter | None, Query(description="First time not to be included.")] = None,
+    from_: From = None,
+    to: To = None,
     limit: Limit = DEFAULT_LIMIT,
     cursor: CursorText = None,
 ) -> Page[Measurement] | StreamingResponse:

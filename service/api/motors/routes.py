@@ -21,7 +21,7 @@ from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, pa
 from service.api.problems import problems
 from service.api.recordings.listed import listed
 from service.api.recordings.schemas import ListedRecording, Recording
-from service.api.times import TimeParameter, rfc3339
+from service.api.times import From, To, rfc3339
 from service.condition.staleness import stale_after_ns
 from service.configuration.settings import Settings
 from service.exports import recordings, trends
@@ -91,8 +91,8 @@ def get_trend(
     name: Name,
     file: ListAnswer,
     quantity: Literal[Quantity, ConditionQuantity] = "mu_f",
-    from_: Annotated[TimeParameter | None, Query(alias="from", description="First time.")] = None,
-    to: Annotated[TimeParameter | None, Query(description="First time not to be included.")] = None,
+    from_: From = None,
+    to: To = None,
     limit: Limit = DEFAULT_LIMIT,
     cursor: CursorText = None,
 ) -> Page[TrendPoint] | StreamingResponse:

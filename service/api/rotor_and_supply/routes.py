@@ -1,8 +1,6 @@
 """What the recordings of a motor show of its rotor and its supply, over time."""
 
-from typing import Annotated
-
-from fastapi import APIRouter, Query
+from fastapi import APIRouter
 
 from service.access.permissions import Permission
 from service.alarms.rotor_rules import rotor_advice
@@ -13,11 +11,8 @@ from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, pa
 from service.api.problems import problems
 from service.api.rotor_and_supply.schemas import RotorCondition, RotorTrendPoint, SupplyTrendPoint
 from service.api.rotor_and_supply.start_agreement import StartAgreement, start_agreement
-from service.api.times import TimeParameter
+from service.api.times import From, To
 from service.storage.records import RotorEntry, SupplyEntry
-
-From = Annotated[TimeParameter | None, Query(alias="from", description="First time.")]
-To = Annotated[TimeParameter | None, Query(description="First time not to be included.")]
 
 router = APIRouter(prefix="/motors/{name}", tags=["condition"])
 

@@ -1,8 +1,6 @@
 """The parameters of a motor, followed while it runs."""
 
-from typing import Annotated
-
-from fastapi import APIRouter, Query
+from fastapi import APIRouter
 
 from service.access.permissions import Permission
 from service.api.access.requirements import require
@@ -10,11 +8,8 @@ from service.api.context import Context
 from service.api.document import Name
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
-from service.api.times import TimeParameter
+from service.api.times import From, To
 from service.api.tracking.schemas import TrackedMotor, TrackedTrendPoint, tracked_motor, tracked_trend_point
-
-From = Annotated[TimeParameter | None, Query(alias="from", description="First time.")]
-To = Annotated[TimeParameter | None, Query(description="First time not to be included.")]
 
 router = APIRouter(prefix="/motors/{name}", tags=["condition"])
 
