@@ -11,6 +11,7 @@ from core.diagnosis.stator import diagnose_accepted
 from core.machines.motor_file.reader import read_motor
 from core.machines.parameters import Motor
 from core.recordings import Channel, Quantity, Recording, read
+from core.rotor.baseband import baseband_of
 from core.rotor.examining import examine_rotor
 from ied_sim.motor.load import Load
 from ied_sim.motor.plant import MotorPlant
@@ -44,7 +45,8 @@ def look_at(recording: Recording, motor: Motor) -> None:
     acceptance = accept(recording, motor)
     if acceptance.accepted is None:
         sys.exit("; ".join(finding.message for finding in acceptance.quality if not finding.passed))
-    rotor = examine_rotor(acceptance.accepted, diagnose_accepted(acceptance))
+    accepted = acceptance.accepted
+    rotor = examine_rotor(baseband_of(accepted), accepted, diagnose_accepted(acceptance))
     print(f"{rotor.state}: " + "; ".join(rotor.reasons))
     if rotor.severity_dB is not None and rotor.severity_dB_ci95 is not None:
         low, high = rotor.severity_dB_ci95

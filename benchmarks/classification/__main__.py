@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from benchmarks.classification import confusion, measured
+from benchmarks.classification import confusion, measured, speed
 from benchmarks.page_of_subjects import PageOfSubjects
 
 PAGE = Path("docs/evidence/classification.md")
@@ -19,8 +19,8 @@ was changed: the torque takes in what an uneven air gap pulls.
 
 One record does not tell what the load was before; that cause is told over a motor's records alone.
 """
-SUBJECTS = {"confusion": confusion.sections}
-ORDER = ("single", "pairs", "measured")
+SUBJECTS = {"confusion": confusion.sections, "speed": speed.sections}
+ORDER = ("single", "pairs", "measured", "speed")
 
 if __name__ == "__main__":
     PageOfSubjects(PAGE, PREAMBLE, SUBJECTS, measured.sections, ORDER).measure(__doc__)

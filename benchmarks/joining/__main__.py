@@ -14,6 +14,7 @@ from core.diagnosis.stator import diagnose_accepted
 from core.machines.parameters import Motor
 from core.recordings import Recording
 from core.recordings.joining import Joined, join
+from core.rotor.baseband import baseband_of
 from core.rotor.examining import examine_rotor
 from core.rotor.finding import RotorFinding
 from ied_sim.motor.load import Load
@@ -94,7 +95,7 @@ def _finding(record: Recording, motor: Motor) -> RotorFinding | None:
     accepted = accept(record, motor).accepted
     if accepted is None:
         return None
-    return examine_rotor(accepted, diagnose_accepted(accept(record, motor)))
+    return examine_rotor(baseband_of(accepted), accepted, diagnose_accepted(accept(record, motor)))
 
 
 def lines() -> Iterator[str]:

@@ -13,6 +13,7 @@ from core.diagnosis.acceptance import accept
 from core.diagnosis.stator import diagnose_accepted
 from core.diagnosis.verdict import Diagnosis
 from core.machines.parameters import Motor, ParameterTolerances
+from core.rotor.baseband import baseband_of
 from core.rotor.examining import examine_rotor
 from core.rotor.finding import RotorFinding
 from ied_sim.motor.load import Load, Pulsation
@@ -126,7 +127,7 @@ def _finding(
         return None
     if not diagnosed:
         diagnosed.append(diagnose_accepted(acceptance))
-    return examine_rotor(acceptance.accepted, diagnosed[0])
+    return examine_rotor(baseband_of(acceptance.accepted), acceptance.accepted, diagnosed[0])
 
 
 def _wrong(motor: Motor, random: np.random.Generator) -> Motor:

@@ -54,7 +54,8 @@ def _examined(case: RotorCase) -> tuple[Baseband, RotorFinding]:
     acceptance = accept(case.record(10.0), MEDIUM)
     if acceptance.accepted is None:
         raise RuntimeError(f"the quality gate refuses the record: {acceptance.quality}")
-    return baseband_of(acceptance.accepted), examine_rotor(acceptance.accepted, diagnose_accepted(acceptance))
+    recorded = baseband_of(acceptance.accepted)
+    return recorded, examine_rotor(recorded, acceptance.accepted, diagnose_accepted(acceptance))
 
 
 def _words(finding: RotorFinding) -> str:

@@ -7,6 +7,7 @@ from time import perf_counter
 from benchmarks.reporting import Section, mark
 from core.diagnosis.acceptance import accept
 from core.diagnosis.stator import diagnose_accepted
+from core.rotor.baseband import baseband_of
 from core.rotor.examining import examine_rotor
 from testing.machines.motors import MEDIUM
 from testing.machines.rotor_records import RotorCase
@@ -26,7 +27,7 @@ def sections(pool: Executor, *, quick: bool) -> list[Section]:
     times_s = []
     for _ in range(REPEATS):
         begun = perf_counter()
-        examine_rotor(acceptance.accepted, diagnosis)
+        examine_rotor(baseband_of(acceptance.accepted), acceptance.accepted, diagnosis)
         times_s.append(perf_counter() - begun)
     middle_s = median(times_s)
     line = (

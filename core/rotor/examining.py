@@ -7,7 +7,7 @@ from core.diagnosis.verdict import Diagnosis
 from core.machines.parameters import Motor
 from core.machines.wound_rotor import resistance_at_rings_ohm, resistance_ratios
 from core.rotor.asymmetry import FEWEST_TURNS_OF_ANY, measure_asymmetry
-from core.rotor.baseband import Baseband, baseband_of
+from core.rotor.baseband import Baseband
 from core.rotor.finding import RotorFinding, RotorState, decibels, load_bin
 from core.rotor.judgement import judge
 from core.rotor.running_point import running_point, slip_course, without_delay
@@ -31,13 +31,15 @@ SLIP_TOO_LARGE = (
 )
 
 
-def examine_rotor(accepted: Accepted, diagnosis: Diagnosis) -> RotorFinding:
+def examine_rotor(recorded: Baseband, accepted: Accepted, diagnosis: Diagnosis) -> RotorFinding:
     """Tell from one record whether the rotor's cage has broken bars, or a wound rotor a bad contact.
 
     Parameters
     ----------
+    recorded : Baseband
+        The record's steady stretch, by `core.rotor.baseband.baseband_of`.
     accepted : Accepted
-        A record that passed the quality gate.
+        The record, which passed the quality gate.
     diagnosis : Diagnosis
         Its diagnosis, which knows the sensors' delay, and the load beside shorted turns.
 
@@ -47,7 +49,6 @@ def examine_rotor(accepted: Accepted, diagnosis: Diagnosis) -> RotorFinding:
         State, figures and reasons. A number of broken bars does not follow from them.
     """
     case, motor = accepted.case, accepted.case.motor
-    recorded = baseband_of(accepted)
     duration_s = recorded.duration_s
     baseband = without_delay(recorded, motor, diagnosis.time_offset_s, assumed=case.voltages_assumed)
     if baseband is None:

@@ -5,7 +5,7 @@ from core.diagnosis.verdict import Diagnosis, not_finite
 from core.machines.parameters import Motor
 from core.operation import Operation
 from core.recordings import Recording, RecordingError
-from core.rotor.baseband import baseband_of
+from core.rotor.baseband import Baseband, baseband_of
 from core.rotor.eccentricity import EccentricityFinding, examine_eccentricity
 from core.rotor.examining import examine_rotor
 from core.rotor.finding import RotorFinding, RotorState
@@ -14,9 +14,18 @@ from core.rotor.running_point import without_delay
 from core.supply.figures import SupplyFigures
 from core.supply.measuring import measure_supply
 
+NO_ROTOR = "the figures of the rotor cannot be computed"
+NO_SWINGS = "the figures of the swings cannot be computed"
+_NOT_COMPUTABLE = (ValueError, ArithmeticError)
+"""Errors of figures; SignalError and numpy's LinAlgError are among them."""
 
-def rotor_of(recording: Recording, accepted: Accepted | None, diagnosis: Diagnosis) -> RotorFinding:
-    """Tell what a record shows of the rotor.
+
+def rotor_and_swings_of(
+    recording: Recording, accepted: Accepted | None, diagnosis: Diagnosis
+) -> tuple[RotorFinding, EccentricityFinding, PulsationFinding]:
+    """Tell what a record shows of the rotor, of the air gap and of a load that swings.
+
+    All of them look at the same space vectors in the frame of the supply, which are taken once.
 
     Parameters
     ----------
@@ -30,60 +39,59 @@ def rotor_of(recording: Recording, accepted: Accepted | None, diagnosis: Diagnos
     Returns
     -------
     RotorFinding
-        The finding. Where the record was refused, or its figures cannot be computed, its state is
-        unsupported and its reasons say why.
-    """
-    if accepted is None:
-        return _unsupported(recording, "the quality gate refused the record")
-    try:
-        finding = examine_rotor(accepted, diagnosis)
-    except (ValueError, ArithmeticError) as error:  # so are SignalError and numpy's LinAlgError
-        return _unsupported(recording, f"the figures of the rotor cannot be computed: {error}")
-    impossible = not_finite(finding.as_dict())
-    if impossible is None:
-        return finding
-    return _unsupported(recording, f"the figures of the rotor cannot be computed: {impossible} is not finite")
-
-
-def swings_of(
-    accepted: Accepted | None, diagnosis: Diagnosis, rotor: RotorFinding
-) -> tuple[EccentricityFinding, PulsationFinding]:
-    """Tell what a record shows of the air gap and of a load that swings.
-
-    Parameters
-    ----------
-    accepted : Accepted or None
-        The record after the quality gate; None where it was refused.
-    diagnosis : Diagnosis
-        Its diagnosis.
-    rotor : RotorFinding
-        What it tells of the rotor's cage.
-
-    Returns
-    -------
+        What it tells of the rotor's cage. Where the record was refused, or its figures cannot be computed,
+        its state is unsupported and its reasons say why.
     EccentricityFinding
         What it tells of the air gap; its reasons say why it tells nothing.
     PulsationFinding
         What it tells of the load, likewise.
     """
     if accepted is None:
-        return _nothing_of_swings("the quality gate refused the record")
+        refused = "the quality gate refused the record"
+        return _unsupported(recording, refused), *_nothing_of_swings(refused)
+    try:
+        recorded = baseband_of(accepted)
+    except _NOT_COMPUTABLE as error:
+        return (
+            _unsupported(recording, f"{NO_ROTOR}: {error}"),
+            *_nothing_of_swings(f"{NO_SWINGS}: {error}"),
+        )
+    rotor = _rotor(recording, recorded, accepted, diagnosis)
+    return rotor, *_swings(recorded, accepted, diagnosis, rotor)
+
+
+def _rotor(
+    recording: Recording, recorded: Baseband, accepted: Accepted, diagnosis: Diagnosis
+) -> RotorFinding:
+    try:
+        finding = examine_rotor(recorded, accepted, diagnosis)
+    except _NOT_COMPUTABLE as error:
+        return _unsupported(recording, f"{NO_ROTOR}: {error}")
+    impossible = not_finite(finding.as_dict())
+    return (
+        finding if impossible is None else _unsupported(recording, f"{NO_ROTOR}: {impossible} is not finite")
+    )
+
+
+def _swings(
+    recorded: Baseband, accepted: Accepted, diagnosis: Diagnosis, rotor: RotorFinding
+) -> tuple[EccentricityFinding, PulsationFinding]:
     case = accepted.case
     if case.voltages_assumed:
         return _nothing_of_swings("no voltages recorded: a supply that pulsates would look the same")
     try:
-        baseband = without_delay(baseband_of(accepted), case.motor, diagnosis.time_offset_s, assumed=False)
+        baseband = without_delay(recorded, case.motor, diagnosis.time_offset_s, assumed=False)
         if baseband is None:
             return _nothing_of_swings("the currents are not those of this motor at these voltages")
         even_rotor = rotor.state is RotorState.HEALTHY
         eccentricity = examine_eccentricity(baseband, case.motor)
         pulsation = examine_pulsation(baseband, case.motor, even_rotor=even_rotor)
-    except (ValueError, ArithmeticError) as error:  # so are SignalError and numpy's LinAlgError
-        return _nothing_of_swings(f"the figures of the swings cannot be computed: {error}")
+    except _NOT_COMPUTABLE as error:
+        return _nothing_of_swings(f"{NO_SWINGS}: {error}")
     impossible = not_finite([eccentricity.as_dict(), pulsation.as_dict()])
     if impossible is None:
         return eccentricity, pulsation
-    return _nothing_of_swings(f"the figures of the swings cannot be computed: {impossible} is not finite")
+    return _nothing_of_swings(f"{NO_SWINGS}: {impossible} is not finite")
 
 
 def _nothing_of_swings(reason: str) -> tuple[EccentricityFinding, PulsationFinding]:
@@ -118,7 +126,7 @@ def supply_of(
         figures = measure_supply(recording, motor)
     except RecordingError:
         return None, None
-    except (ValueError, ArithmeticError) as error:
+    except _NOT_COMPUTABLE as error:
         return None, f"the figures of the supply cannot be computed: {error}"
     impossible = not_finite(figures.as_dict())
     if impossible is None:

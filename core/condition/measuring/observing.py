@@ -7,7 +7,7 @@ from time import perf_counter
 
 import numpy as np
 
-from core.condition.measuring.beside_stator import rotor_of, supply_of, swings_of
+from core.condition.measuring.beside_stator import rotor_and_swings_of, supply_of
 from core.condition.measuring.measurement import LONGEST_RECORDER, negative_impedance
 from core.condition.observation import Observation, VoltageChannels
 from core.diagnosis.acceptance import Accepted, accept
@@ -148,8 +148,7 @@ def examine(
     supply, problem = supply_of(recording, motor, acceptance)
     if problem is not None:
         diagnosis = replace(diagnosis, reasons=(*diagnosis.reasons, problem))
-    rotor = rotor_of(recording, accepted, diagnosis)
-    eccentricity, pulsation = swings_of(accepted, diagnosis, rotor)
+    rotor, eccentricity, pulsation = rotor_and_swings_of(recording, accepted, diagnosis)
     return Examined(
         diagnosis=diagnosis,
         observation=None if accepted is None or undated else observation_of(recording, accepted),

@@ -10,6 +10,7 @@ from core.diagnosis.acceptance import accept
 from core.diagnosis.stator import diagnose_accepted
 from core.diagnosis.verdict import Verdict
 from core.quality.swing import without_swing
+from core.rotor.baseband import baseband_of
 from core.rotor.examining import examine_rotor
 from core.rotor.finding import RotorState
 from testing.machines.motors import MEDIUM
@@ -51,7 +52,8 @@ def test_broken_bars_beside_a_swinging_load_are_examined(duration_s: float) -> N
     )
     acceptance = accept(swings.record(duration_s), MEDIUM)
     assert acceptance.accepted is not None, acceptance.quality
-    found = examine_rotor(acceptance.accepted, diagnose_accepted(acceptance))
+    accepted = acceptance.accepted
+    found = examine_rotor(baseband_of(accepted), accepted, diagnose_accepted(acceptance))
     assert found.state is RotorState.FAULT
     assert found.duration_s > 0.95 * duration_s
 

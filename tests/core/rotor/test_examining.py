@@ -11,6 +11,7 @@ from core.diagnosis.acceptance import accept
 from core.diagnosis.stator import diagnose_accepted
 from core.machines.parameters import Motor
 from core.recordings import Recording
+from core.rotor.baseband import baseband_of
 from core.rotor.examining import examine_rotor
 from core.rotor.finding import RotorFinding, RotorState, load_bin
 from ied_sim.motor.supply import Supply
@@ -40,7 +41,8 @@ class PulsatingSupply(Supply):
 def _found(record: Recording, motor: Motor, *, currents_only: bool = False) -> RotorFinding:
     acceptance = accept(record, motor, currents_only=currents_only)
     assert acceptance.accepted is not None, acceptance.quality
-    return examine_rotor(acceptance.accepted, diagnose_accepted(acceptance))
+    accepted = acceptance.accepted
+    return examine_rotor(baseband_of(accepted), accepted, diagnose_accepted(acceptance))
 
 
 def _severity(finding: RotorFinding) -> float:
@@ -172,11 +174,12 @@ def test_a_motor_that_the_diagnosis_does_not_recognise_is_examined_where_its_cur
     acceptance = accept(RotorCase(MEDIUM, broken_share=ONE_BAR).record(5.0), MEDIUM)
     assert acceptance.accepted is not None
     nameless = replace(diagnose_accepted(acceptance), time_offset_s=None)
-    assert examine_rotor(acceptance.accepted, nameless).state is RotorState.FAULT
+    accepted = acceptance.accepted
+    assert examine_rotor(baseband_of(accepted), accepted, nameless).state is RotorState.FAULT
     machine = MEDIUM.parameters
     other = replace(machine, stator_self_inductance_H=1.6 * machine.stator_self_inductance_H)
-    case = replace(acceptance.accepted.case, motor=replace(MEDIUM, parameters=other))
-    found = examine_rotor(replace(acceptance.accepted, case=case), nameless)
+    of_other = replace(accepted, case=replace(accepted.case, motor=replace(MEDIUM, parameters=other)))
+    found = examine_rotor(baseband_of(of_other), of_other, nameless)
     assert found.state is RotorState.UNSUPPORTED
     assert "not those of this motor" in found.reasons[0]
 

@@ -8,6 +8,7 @@ import scl
 from core.diagnosis.acceptance import accept
 from core.diagnosis.stator import diagnose_accepted
 from core.machines.motor_file.reader import motor_from_table
+from core.rotor.baseband import baseband_of
 from core.rotor.examining import examine_rotor
 from core.rotor.finding import RotorFinding, RotorState
 from core.units import SECONDS_PER_DAY
@@ -31,7 +32,8 @@ def found(ied: str, day: float) -> RotorFinding:
     motor = motor_from_table(parts, name=FEEDERS[ied], source=MOTORS)
     acceptance = accept(record_of(samples, recorder.sample_rate_hz), motor)
     assert acceptance.accepted is not None, acceptance.quality
-    return examine_rotor(acceptance.accepted, diagnose_accepted(acceptance))
+    accepted = acceptance.accepted
+    return examine_rotor(baseband_of(accepted), accepted, diagnose_accepted(acceptance))
 
 
 @pytest.mark.parametrize(

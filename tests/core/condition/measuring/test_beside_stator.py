@@ -52,6 +52,18 @@ def test_figures_of_the_rotor_that_cannot_be_computed_are_a_reason(
     assert found.supply == expected.supply
 
 
+def test_a_record_without_a_steady_stretch_tells_neither_rotor_nor_swings(
+    record: Recording, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    expected = examine(record, REFERENCE)
+    monkeypatch.setattr(beside_stator, "baseband_of", no_solution)
+    found = examine(record, REFERENCE)
+    assert found.rotor.reasons == ("the figures of the rotor cannot be computed: singular matrix",)
+    assert found.eccentricity.reasons == ("the figures of the swings cannot be computed: singular matrix",)
+    assert found.pulsation.reasons == found.eccentricity.reasons
+    assert found.diagnosis.mu_f == expected.diagnosis.mu_f
+
+
 def test_figures_of_the_supply_that_are_not_finite_are_a_reason(
     record: Recording, monkeypatch: pytest.MonkeyPatch
 ) -> None:
