@@ -8,6 +8,7 @@ file's name already says that it cannot be trusted.
 import time
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
+from math import inf
 from typing import Protocol
 
 import structlog
@@ -38,6 +39,9 @@ from service.storage.errors import FolderGoneError
 from service.storage.states import AlarmKind
 
 log = structlog.get_logger(__name__)
+
+PULL_MARGIN = 2.0
+"""A pull may take so many times as long as the latest one lets expect."""
 
 ClaimRequest = Callable[[str], str | None]
 """Returns the recording request, if any, that a new record of this name belongs to."""
@@ -134,12 +138,14 @@ class RecordDirectory:
         self._wrong_listings = WrongListings()
         self._view: _View | None = None
         self._not_listed_since_s: float | None = None
+        self._bytes_per_s = 0.0
         self.listing_s = 0.0
 
-    def scan(self, client: Client, claim: ClaimRequest, *, expected: bool) -> Scan:
+    def scan(self, client: Client, claim: ClaimRequest, *, expected: bool, within_s: float = inf) -> Scan:
         """List the directory; pull and store what is new and ready, oldest first, those that failed last.
 
-        expected: a report has just said that a record was made. Raises MmsError when the link fails, OSError
+        expected: a report has just said that a record was made.  within_s: what would probably take longer is
+        left for a later scan [s]. Raises MmsError when the link fails, OSError
         when the disk does; what was stored until then stays.
         """
         began_s = time.monotonic()
@@ -159,7 +165,9 @@ class RecordDirectory:
         ready, unsteady = self._ready_and_unsteady(view.new)
         self._note_unsteady(unsteady, view.chosen)
         self._end_incomplete(view, contents.directory, claim)
-        held_back = self._take_all(client, in_turn(ready, time.monotonic()), claim)
+        held_back = self._take_all(
+            client, in_turn(ready, time.monotonic()), claim, until_s=began_s + within_s
+        )
         return self._outcome(view, unsteady, held_back)
 
     def _not_listed(self, reason: str, now_s: float) -> Scan:
@@ -266,10 +274,14 @@ class RecordDirectory:
             else:
                 self._refuse(state, reason, claim)
 
-    def _take_all(self, client: Client, ready: list[RecordState], claim: ClaimRequest) -> tuple[str, ...]:
+    def _take_all(
+        self, client: Client, ready: list[RecordState], claim: ClaimRequest, *, until_s: float
+    ) -> tuple[str, ...]:
         """Pull what is ready as far as the day's limit allows. Return the names of those that must wait."""
         for number, state in enumerate(ready):
             sizes = tuple(file.size for file in state.record.files)
+            if time.monotonic() + PULL_MARGIN * self._takes_s(sum(sizes)) > until_s:
+                return ()
             too_large = max(sizes) > self._max_file_bytes
             if not too_large and not self._allowance.allows(sizes, time.time_ns()):
                 self._alarms.raise_alarm(
@@ -299,10 +311,16 @@ class RecordDirectory:
         except FolderGoneError as error:  # somebody deleted the same content just now
             log.info("record pulled once more", relay=self._relay, record=state.name, reason=str(error))
 
+    def _takes_s(self, size: int) -> float:
+        """Return how long a pull of so many bytes takes, by the latest one; infinite where there was none."""
+        return size / self._bytes_per_s if self._bytes_per_s else inf
+
     def _pull(self, client: Client, state: RecordState) -> StoredRecording:
+        began_s = time.monotonic()
         stored = pull(
             client, state.record, self._store, max_file_bytes=self._max_file_bytes, on_bytes=self._received
         )
+        self._bytes_per_s = sum(file.size for file in state.record.files) / (time.monotonic() - began_s)
         for file in state.record.files:
             self._allowance.charge(beyond_its_end(file.size), time.time_ns())
         return stored

@@ -33,6 +33,8 @@ class Metering:
 
     A value that the model promises and the relay does not have is left out until the next connection. A value
     that the relay has and cannot give is left out of that sample. Both are logged.
+
+    takes_s: how long the latest sample took.
     """
 
     def __init__(
@@ -52,6 +54,7 @@ class Metering:
         self._logged: set[Measurand] = set()
         self._next_s = 0.0
         self._next_statistics_s = 0.0
+        self.takes_s = 0.0
 
     def begin(self, measurands: tuple[Measurand, ...] | None = None) -> None:
         """Begin a new connection. measurands: what the relay offers; None where what is known still holds."""
@@ -69,6 +72,7 @@ class Metering:
 
     def sample(self, client: Client) -> None:
         """Take a sample now. Raises MmsError (the link)."""
+        began_s = time.monotonic()
         self._next_s += self._period_s
         if self._next_s < time.monotonic():
             # What was missed, because a long record was pulled meanwhile, is not made up for.
@@ -77,6 +81,7 @@ class Metering:
         if with_statistics:
             self._next_statistics_s = time.monotonic() + STATISTICS_PERIOD_S
         values = self._values(client, with_statistics=with_statistics)
+        self.takes_s = time.monotonic() - began_s
         if values:
             self._on_sample(Sample(self._motor, time.time_ns(), values))
 

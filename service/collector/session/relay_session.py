@@ -3,7 +3,6 @@
 What a relay does wrong ends with its own session: the link is down with the reason, and is tried again.
 """
 
-import math
 import time
 from collections.abc import Callable
 from contextlib import ExitStack, nullcontext
@@ -108,7 +107,6 @@ class RelaySession:
             clock=self._clock,
             record_timeout_s=settings.record_timeout_s,
             gateway=gateway,
-            pause=self._stopping.wait,
         )
         self._metering = (
             None
@@ -252,18 +250,24 @@ class RelaySession:
         return [reason for reason in reasons if reason is not None]
 
     def _wait(self, client: Client, longest_s: float) -> None:
-        """Wait until there is something to do, or for so long; take the samples that fall due meanwhile.
+        """Wait until there is something to do, or for so long; do what falls due meanwhile.
 
+        That is the triggers of a series, and samples that end before the next of them.
         Reports that announce no record, of which a chattering input sends many, do not end the wait.
         """
         until_s = time.monotonic() + longest_s
         while not (self._requested.is_set() or self._stopping.is_set()) and time.monotonic() < until_s:
-            due_in_s = math.inf if self._metering is None else self._metering.due_in_s()
-            if self._metering is not None and due_in_s <= 0:
-                self._metering.sample(client)
+            due_in_s = self._triggers.due_in_s()
+            if due_in_s <= 0:
+                self._triggers.trigger_again(client)
                 continue
+            if self._metering is not None and self._metering.takes_s < due_in_s:
+                due_in_s = min(due_in_s, self._metering.due_in_s())
+                if due_in_s <= 0:
+                    self._metering.sample(client)
+                    continue
             with nullcontext() if self._mark is None else self._mark.idle():
-                self._wake_up.wait(min(due_in_s, until_s - time.monotonic()))
+                self._wake_up.wait(max(0.0, min(due_in_s, until_s - time.monotonic())))
             self._wake_up.clear()
             if self._handle_reports():
                 return
@@ -280,11 +284,14 @@ class RelaySession:
         self._subscription.retry_if_due(client)
         self._handle_reports()
         self._triggers.recall()
+        until_trigger_s = self._triggers.due_in_s()
+        if until_trigger_s < LISTING_PAUSE * self._directory.listing_s:
+            return True
         expected = time.monotonic() < self._record_expected_until_s
         if self._record_expected_until_s and not expected:
             self._directory.pull_untimed_again()
             self._record_expected_until_s = 0.0
-        scan = self._directory.scan(client, self._triggers.claim, expected=expected)
+        scan = self._directory.scan(client, self._triggers.claim, expected=expected, within_s=until_trigger_s)
         self._busy = scan.busy
         if scan.busy is not None:
             self._triggers.link_failed(f"lists no files for now: {scan.busy}")

@@ -10,7 +10,8 @@ up after another took over its relays, operates nothing.
 """
 
 import time
-from collections.abc import Callable, Set
+from collections.abc import Set
+from math import inf
 from typing import Protocol
 
 import structlog
@@ -28,7 +29,7 @@ from mms import (
 )
 from service.collector.records.directory import Scan
 from service.collector.triggers.request_deadlines import RequestDeadlines, UnansweredRequests
-from service.collector.triggers.series import NoSeriesError, Rhythm, rhythm_of
+from service.collector.triggers.series import NoSeriesError, SeriesUnderWay, rhythm_of
 from service.plant import Acquisition, Relay, TriggerAction, acquisition_from_scl
 from service.storage import Repository
 from service.storage.records import RecordingRequest
@@ -44,12 +45,6 @@ link leave a request as it is until its time limit."""
 
 HOLD_S = 0.05
 """The remote bit stays set so long: relays look at their equations every quarter cycle, some less often."""
-
-
-def pause_uninterrupted(pause_s: float) -> bool:
-    """Wait; nothing ends the wait early."""
-    time.sleep(pause_s)
-    return False
 
 
 class ControlClock(Protocol):
@@ -76,15 +71,12 @@ class TriggerQueue:
         clock: ControlClock,
         record_timeout_s: float,
         gateway: str | None = None,
-        pause: Callable[[float], bool] = pause_uninterrupted,
     ) -> None:
-        """pause: waits for so many seconds; returns whether the session is to end instead."""
         self._relay = relay
         self._acquisition = acquisition_from_scl(relay)
         self._repository = repository
         self._clock = clock
         self._gateway = gateway
-        self._pause = pause
         self._deadlines = RequestDeadlines(record_timeout_s)
         self._unanswered = UnansweredRequests(relay.name, repository, self._deadlines)
         self._outstanding: RecordingRequest | None = None
@@ -93,10 +85,34 @@ class TriggerQueue:
         self._operated_for: str | None = None
         self._listed_before: frozenset[str] = frozenset()
         self._held_up_since_s: float | None = None
+        self._series: SeriesUnderWay | None = None
 
     def use(self, acquisition: Acquisition) -> None:
-        """Use what a new connection has found."""
+        """Use what a new connection has found. A series ends with its connection."""
         self._acquisition = acquisition
+        self._series = None
+
+    def due_in_s(self) -> float:
+        """Return the time until the next trigger of a series [s]; infinite where there is none."""
+        return inf if self._series is None else self._series.due_in_s(time.monotonic())
+
+    def trigger_again(self, client: Client) -> None:
+        """Make the trigger of the series that is due. Raises MmsError (the link).
+
+        Where the relay refuses it the series ends early, and the records made so far are joined.
+        """
+        series = self._series
+        if series is None:
+            return
+        try:
+            client.operate(series.control, True)  # noqa: FBT003 - the value of a control
+        except REFUSALS as error:
+            log.warning("the series ends early", relay=self._relay.name, reason=str(error))
+            self._series = None
+            return
+        series.triggered()
+        time.sleep(HOLD_S)
+        self._end_pulse(client, series.control)
 
     def recall(self) -> None:
         """Look up which request, if any, waits for a record of this relay, and which one is next."""
@@ -122,6 +138,8 @@ class TriggerQueue:
         self.recall()
         self._claimed = True
         self._deadlines.gave_a_record()
+        if self._series is not None:
+            self._series.came()
         request = self._outstanding
         if request is None or record_name in self._listed_before:
             return None
@@ -136,7 +154,11 @@ class TriggerQueue:
             self.recall()
         self._deadlines.answered(time.monotonic())
         request = self._outstanding
+        if self._series is not None and self._series.is_over(time.monotonic()):
+            self._series = None
         if request is None:
+            if self._series is not None:
+                return True
             return self._next is not None and (
                 self._is_held_up(scan) or self._grant(client, self._next, scan)
             )
@@ -150,7 +172,7 @@ class TriggerQueue:
             return False
         appeared = {*scan.waiting, *scan.failing} - self._listed_before
         still_written = appeared - scan.failing.keys()  # for as long as the directory's own limits allow
-        is_overdue = self._deadlines.ends_without_record(request, time.monotonic())
+        is_overdue = self._series is None and self._deadlines.ends_without_record(request, time.monotonic())
         if appeared and request.state is RecordingRequestState.TRIGGERED:
             self._repository.mark_recorded(request.id, now_ns=time.time_ns())
         elif is_overdue and not still_written:
@@ -176,7 +198,8 @@ class TriggerQueue:
         )
 
     def link_failed(self, reason: str) -> None:
-        """Fail the requests that have waited long enough for a relay that cannot be asked."""
+        """Fail the requests that have waited long enough for a relay that cannot be asked; end the series."""
+        self._series = None
         self._unanswered.fail_overdue(reason)
 
     def _is_held_up(self, scan: Scan) -> bool:
@@ -253,7 +276,9 @@ class TriggerQueue:
             self._clock.note_change(stamp, asked_ns=asked_ns, answered_ns=answered_ns)
         self._end_pulse(client, control)
         if rhythm is not None:
-            self._repeat(client, control, rhythm, asked_s)
+            self._series = SeriesUnderWay(
+                control, rhythm, began_s=asked_s, record_timeout_s=self._deadlines.timeout_s
+            )
         return True
 
     def _end_pulse(self, client: Client, control: str) -> None:
@@ -265,23 +290,8 @@ class TriggerQueue:
         except REFUSALS as error:
             log.warning("the trigger stays set", relay=self._relay.name, control=control, reason=str(error))
 
-    def _repeat(self, client: Client, control: str, rhythm: Rhythm, began_s: float) -> None:
-        """Trigger again and again, each time before the pre-trigger time has passed since the last record.
-
-        Where it ends early, the records made so far are joined. Raises MmsError (the link).
-        """
-        for number in range(1, rhythm.triggers):
-            if self._pause(max(0.0, began_s + number * rhythm.period_s - time.monotonic())):
-                return
-            try:
-                client.operate(control, True)  # noqa: FBT003
-            except REFUSALS as error:
-                log.warning("the series ends early", relay=self._relay.name, reason=str(error))
-                return
-            time.sleep(HOLD_S)
-            self._end_pulse(client, control)
-
     def _fail(self, request: RecordingRequest, reason: str) -> None:
+        self._series = None
         self._repository.fail_recording_request(request.id, reason, now_ns=time.time_ns())
         log.warning(
             "recording request failed", relay=self._relay.name, recording_request=request.id, reason=reason

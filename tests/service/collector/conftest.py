@@ -1,7 +1,7 @@
 """A plant of one scripted relay, a real database and recording store, and sessions to run against them."""
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -16,7 +16,7 @@ from service.configuration.settings import Settings
 from service.plant import Plant, PlantMotor, Relay, Site
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect
-from service.storage.records import RecordingEntry, RecordingRequest
+from service.storage.records import RecordingEntry, RecordingRequest, Sample
 from service.storage.states import AlarmKind, LinkState, RecordingRequestState, RecordingState
 from testing.ports import LOOPBACK, free_port
 from testing.service.database import make_database
@@ -49,7 +49,7 @@ class Bench:
         return ScriptedRelay(self.relay_root, self.relay.port)
 
     @contextmanager
-    def session(self) -> Iterator[RelaySession]:
+    def session(self, on_sample: Callable[[Sample], None] | None = None) -> Iterator[RelaySession]:
         """A running session; the block's end is the collector's end."""
         session = RelaySession(
             self.relay,
@@ -57,6 +57,7 @@ class Bench:
             self.repository,
             self.store,
             self.settings,
+            on_sample=on_sample,
             policy=self.policy,
         )
         thread = Thread(target=session.run)

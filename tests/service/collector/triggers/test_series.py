@@ -2,6 +2,7 @@
 
 import time
 from dataclasses import replace
+from math import inf
 from pathlib import Path
 
 import numpy as np
@@ -10,10 +11,10 @@ import pytest
 from core.recordings import read
 from ied_sim.relay.event_recorder import RecorderSettings
 from service.background.joining import SeriesJoiner
-from service.collector.triggers.series import NoSeriesError, rhythm_of
+from service.collector.triggers.series import NoSeriesError, SeriesUnderWay, rhythm_of
 from service.jobs.task import Diagnosed, DiagnosisTask
 from service.jobs.worker import diagnose_recording
-from service.storage.records import RecordingEntry
+from service.storage.records import RecordingEntry, Sample
 from service.storage.states import LinkState, RecordingRequestState, RecordingSource, RecordingState
 from service.waveforms.computing import compute_here
 from testing.relays.simulated import scenario_of, simulated
@@ -25,6 +26,7 @@ from tests.service.collector.session.test_simulated_relays import of
 RECORDER = RecorderSettings(sample_rate_hz=1_600.0, pre_trigger_s=0.4, post_trigger_s=0.3, capacity=12)
 WANTED_S = 2.0
 TRIGGERS = 4
+LONGER_S, LONGER_TRIGGERS = 3.5, 7
 RUNNER = "here"
 
 
@@ -172,3 +174,52 @@ def test_a_relay_that_cannot_make_a_series_is_told_apart(
 ) -> None:
     with pytest.raises(NoSeriesError, match=said):
         rhythm_of(length, seconds)
+
+
+def test_between_the_triggers_of_a_series_the_relay_is_measured_and_records_are_fetched(
+    ready: Bench, tmp_path: Path
+) -> None:
+    """The next request waits until all records of the series came."""
+    scenario = scenario_of("sel-710-ed2", recorder=RECORDER)
+    samples: list[Sample] = []
+    with simulated(tmp_path / "relays", scenario) as served:
+        here = of(ready, served, "EVENTS").with_settings(metering_period_s=0.2, record_timeout_s=20.0)
+        with here.session(samples.append) as session:
+            once = ask(here, None)
+            session.wake()
+            assert eventually(lambda: here.requested(once).state is RecordingRequestState.FETCHED, 20)
+            diagnose_all(here)
+            wanted = ask(here, LONGER_S)
+            after = ask(here, None)
+            session.wake()
+            assert eventually(lambda: here.requested(after).state is RecordingRequestState.FETCHED, 40)
+    assert here.requested(wanted).triggers == LONGER_TRIGGERS
+    diagnose_all(here)
+    records = sorted(here.recordings(), key=lambda one: one.recorded_ns or 0)
+    assert len(records) == 1 + LONGER_TRIGGERS + 1
+    first, *_, last = records[1:-1]
+    assert (here.requested(wanted).recording_id, here.requested(after).recording_id) == (
+        first.id,
+        records[-1].id,
+    )
+    begun_ns, ended_ns = here.requested(wanted).triggered_ns or 0, last.recorded_ns or 0
+    assert first.fetched_ns is not None
+    assert first.fetched_ns < ended_ns
+    meanwhile = [sample for sample in samples if begun_ns < sample.time_ns < ended_ns]
+    assert len(meanwhile) >= LONGER_TRIGGERS, "at least one sample from trigger to trigger"
+
+
+def test_a_series_waits_for_its_records_but_not_for_ever() -> None:
+    rhythm = rhythm_of((0.7, 0.4), WANTED_S)
+    series = SeriesUnderWay("RB", rhythm, began_s=100.0, record_timeout_s=20.0)
+    assert series.due_in_s(100.0) == pytest.approx(rhythm.period_s)
+    for _ in range(rhythm.triggers - 1):
+        assert not series.is_over(1_000.0)
+        series.triggered()
+    assert series.due_in_s(101.0) == inf
+    last_s = 100.0 + (rhythm.triggers - 1) * rhythm.period_s
+    assert not series.is_over(last_s + 19.9)
+    assert series.is_over(last_s + 20.1)
+    for _ in range(rhythm.triggers):
+        series.came()
+    assert series.is_over(last_s)
