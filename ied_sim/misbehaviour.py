@@ -27,6 +27,8 @@ class Kind(StrEnum):
     FEW_SESSIONS = "few-sessions"
     FROZEN = "frozen"
     FILES_BUSY = "files-busy"
+    RECORD_REPLACED = "record-replaced"
+    TWO_FOLDERS = "two-folders"
     READS_BUSY = "reads-busy"
     UNREADABLE_MEASURAND = "unreadable-measurand"
     REPORT_OPTFIELDS_READONLY = "report-optfields-readonly"
@@ -39,6 +41,7 @@ PARAMETERS: dict[Kind, tuple[str, float]] = {
     Kind.GROWING_FILE: ("grow_s", 3.0),
     Kind.PARTIAL_LISTING: ("entries", 2.0),
     Kind.WRONG_SIZE: ("by_bytes", 7.0),
+    Kind.RECORD_REPLACED: ("times", 1.0),
     Kind.CLOCK_OFFSET: ("offset_s", 3600.0),
     Kind.LOCAL_TIME: ("offset_s", 3600.0),
     Kind.FEW_SESSIONS: ("sessions", 1.0),

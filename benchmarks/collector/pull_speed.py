@@ -11,7 +11,7 @@ from pathlib import Path
 from benchmarks.interoperability.peers import PeerError, linked
 from mms import Client, TlsConfiguration, filter_tls_log_from_stderr
 from mms.binding.library import shared_library
-from service.collector.records.listing import understand
+from service.collector.records.listing import FolderListing, understand
 from service.collector.records.pull import pull
 from service.recording_store.store import RecordingStore
 from testing.ports import LOOPBACK
@@ -119,9 +119,11 @@ def _stored(directory: Path, port: int, tls: TlsConfiguration | None) -> float:
         tempfile.TemporaryDirectory(dir=directory) as root,
     ):
         store = RecordingStore(Path(root))
-        (record,) = understand(client.files(FOLDER), FOLDER).records
+        (record,) = understand([FolderListing(FOLDER, client.files(FOLDER))]).records
         begun_s = time.perf_counter()
-        stored = pull(client, record, store, max_file_bytes=FILE_BYTES, on_bytes=lambda _: None)
+        with store.incoming() as incoming:
+            pull(client, record, incoming, max_file_bytes=FILE_BYTES, on_bytes=lambda _: None)
+            stored = incoming.keep()
         taken_s = time.perf_counter() - begun_s
     assert stored.size_bytes == FILE_BYTES + len(CFG)
     return taken_s

@@ -57,7 +57,7 @@ class RecordArchive:
         record = self._complete(capture.recording)
         targets = " ".join(bit for bit in TARGET_BITS if self._word[bit])
         if self._files is None:
-            number = FIRST_NUMBER if self.last_number is None else self.last_number + 1
+            number = self._number()
         else:
             number = self._files.store(
                 record,
@@ -65,10 +65,15 @@ class RecordArchive:
                 self._summary(record, capture.kind, targets, metering),
                 utc_offset_min=self._clock.ahead_ns(capture.time_ns) // (60 * NANOSECONDS_PER_SECOND),
                 grow_s=self._misbehaviour_state.number(Kind.GROWING_FILE) or 0.0,
+                in_second=self._misbehaviour_state.is_on(Kind.TWO_FOLDERS) and self._number() % 2 == 1,
             )
         self.last_number = number
         self._journal.add_event(Event(number, capture.time_ns, capture.kind, metering, targets))
         return number
+
+    def _number(self) -> int:
+        """Return the number of the next record."""
+        return FIRST_NUMBER if self.last_number is None else self.last_number + 1
 
     def clear(self) -> None:
         """Delete all records."""

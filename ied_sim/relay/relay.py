@@ -26,6 +26,7 @@ from ied_sim.relay.plant_clock import PlantClock
 from ied_sim.relay.points import RelayPoints
 from ied_sim.relay.protection import Protection
 from ied_sim.relay.record_archive import RecordArchive, RecordOrigin
+from ied_sim.relay.record_replacement import RecordReplacement
 from ied_sim.relay.server import RelayServer
 from ied_sim.relay.settings import relay_settings
 from ied_sim.relay.values import RelayValues
@@ -44,6 +45,7 @@ OPENING_NS = 40_000_000
 
 _PULSE_CYCLES = 0.25
 _STAGING = ".staging"
+_FOLDERS = ("EVENTS", "COMTRADE")
 _TRIP_BITS = {"overcurrent": "50P1T", "thermal": "49T", "unbalance": "46UBT"}
 _TRIP_KINDS = {"overcurrent": "PHASE 50 TRIP", "thermal": "THERMAL TRIP", "unbalance": "UNBALANCE TRIP"}
 
@@ -130,6 +132,11 @@ class Relay:
         self._offered: dict[str, TextMaker] = {}
         root, staging = files / ied_name, files / _STAGING / ied_name
         self._event_files = self._make_event_files(root, staging)
+        replacement = (
+            None
+            if self._event_files is None
+            else RecordReplacement(self.misbehaviour_state, self._event_files)
+        )
         origin = RecordOrigin(
             ied_name, profile.firmware, configuration.plant.supply.direction, self._settings
         )
@@ -158,6 +165,7 @@ class Relay:
             staging=staging,
             operated=self._controls.operate,
             texts={path: self._text(maker) for path, maker in self._offered.items()},
+            on_file_request=None if replacement is None else replacement.asked_for_file,
             access=configuration.access,
             identity=Identity(ied.manufacturer, ied.type, profile.firmware),
             misbehaviour_state=self.misbehaviour_state,
@@ -365,6 +373,8 @@ class Relay:
             capacity=self._configuration.recorder.capacity,
             prefix=profile.files.name,
             formats=profile.record.written(),
+            second=root / next(name for name in _FOLDERS if name != profile.files.folder),
+            keep_latest=Kind.RECORD_REPLACED in self.misbehaviour_state.kinds,
         )
 
     def _text(self, maker: TextMaker) -> Callable[[], bytes]:

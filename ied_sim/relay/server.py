@@ -43,7 +43,7 @@ class RelayServer:
     report blocks of its own: one that is taken in the server is free there.
 
     Clients see the folder `root`. Files are made in `staging` before they appear in it. `texts` are files
-    made at each request, by path under the root.
+    made at each request, by path under the root. `on_file_request` is told of each before it is answered.
     """
 
     def __init__(
@@ -59,6 +59,7 @@ class RelayServer:
         staging: Path,
         operated: Operated,
         texts: Mapping[str, TextSource],
+        on_file_request: Callable[[FileRequest], None] | None,
         access: Access,
         identity: Identity,
         misbehaviour_state: MisbehaviourState,
@@ -75,6 +76,7 @@ class RelayServer:
         self._staging = staging
         self._operated = operated
         self._texts = texts
+        self._on_file_request = on_file_request
         self._access = access
         self._identity = identity
         self._misbehaviour_state = misbehaviour_state
@@ -209,6 +211,8 @@ class RelayServer:
         if self._misbehaviour_state.is_on(Kind.FILES_BUSY):
             return FileAnswer.BUSY
         self._make_texts(request)
+        if self._on_file_request is not None:
+            self._on_file_request(request)
         return FileAnswer.SERVE
 
     def _make_texts(self, request: FileRequest) -> None:

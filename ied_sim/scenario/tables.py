@@ -170,6 +170,7 @@ class MisbehaviourTable(Table):
     grow_s: Duration | None = None
     entries: Annotated[int, Field(ge=1)] | None = None
     by_bytes: int | None = None
+    times: Annotated[int, Field(ge=1)] | None = None
     offset_s: float | None = None
     sessions: Annotated[int, Field(ge=0)] | None = None
     error: Annotated[int, Field(ge=0, le=11)] | None = None

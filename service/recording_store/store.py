@@ -91,6 +91,10 @@ class Incoming:
             sink.flush()
             os.fsync(sink.fileno())
 
+    def sha256(self, name: str) -> str:
+        """Return the SHA-256 of a file that was created here, hexadecimal."""
+        return _sha256(self._directory / safe_name(name))
+
     def keep(self) -> StoredRecording:
         """Move the files to the folder of their content, which may be there already."""
         files = _describe(self._directory)
@@ -229,10 +233,13 @@ def content_directory(root: Path, digest: str) -> Path:
 def _describe(directory: Path) -> tuple[StoredFile, ...]:
     files = []
     for path in sorted(directory.iterdir()):
-        with path.open("rb") as stream:
-            digest = file_digest(stream, "sha256").hexdigest()
-        files.append(StoredFile(path.name, path.stat().st_size, digest))
+        files.append(StoredFile(path.name, path.stat().st_size, _sha256(path)))
     return tuple(files)
+
+
+def _sha256(path: Path) -> str:
+    with path.open("rb") as stream:
+        return file_digest(stream, "sha256").hexdigest()
 
 
 def _entry(directory: Path, names: Iterator[str]) -> Path:

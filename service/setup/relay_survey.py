@@ -11,7 +11,7 @@ from threading import Timer
 
 from core.units import NANOSECONDS_PER_SECOND
 from mms import Client, CredentialFileError, FunctionalConstraint, MmsError, Timestamp
-from service.collector.records.event_folder import ROOT, EventFolder
+from service.collector.records.event_folders import ROOT, EventFolders
 from service.collector.records.listing import understand
 from service.collector.session.browsing import REFUSALS, browse
 from service.collector.session.clock_monitor import (
@@ -117,11 +117,11 @@ def _asked(relay: Relay, client: Client, settings: Settings, clock_s: float) -> 
         acquisition = acquisition_from_scl(relay)
     else:
         acquisition = acquisition_from_offer(relay, offer, lambda control: _is_control(client, control))
-    folder = EventFolder(relay.name, settings.events_directory, relay.overrides.events_directory)
-    contents = folder.contents(client)
+    folders = EventFolders(relay.name, settings.events_directory, relay.overrides.events_directory)
+    contents = folders.contents(client)
     directory = contents.directory
     offset_s, age_s = _clock(client, acquisition, clock_s)
-    records = () if directory is None else understand(contents.entries, directory).records
+    records = understand(contents.folders).records
     return RelaySurvey(
         relay,
         name_plate={} if offer is None else _name_plate(client, offer),
@@ -129,7 +129,7 @@ def _asked(relay: Relay, client: Client, settings: Settings, clock_s: float) -> 
         acquisition=acquisition,
         differences=0 if offer is None or relay.expected is None else len(differences(relay.expected, offer)),
         folder="/" if directory == ROOT else directory,
-        no_folder=folder.missing,
+        no_folder=folders.missing,
         recordings=len(records),
         clock_offset_s=offset_s,
         stamp_age_s=age_s,

@@ -20,7 +20,7 @@ from mms import (
     MmsError,
     Report,
 )
-from service.collector.records.listing import understand
+from service.collector.records.listing import FolderListing, understand
 from service.collector.records.pull import pull
 from service.recording_store.store import RecordingStore, RecordingStoreError
 from testing.ports import LOOPBACK
@@ -80,9 +80,11 @@ class Visitor:
 
     def _pull(self, client: Client) -> None:
         """As the collector does it."""
-        for record in understand(client.files("EVENTS"), "EVENTS").records[:5]:
+        for record in understand([FolderListing("EVENTS", client.files("EVENTS"))]).records[:5]:
             if max(file.size for file in record.files) <= MAX_FILE_BYTES:
-                pull(client, record, self._store, max_file_bytes=MAX_FILE_BYTES, on_bytes=lambda _: None)
+                with self._store.incoming() as incoming:
+                    pull(client, record, incoming, max_file_bytes=MAX_FILE_BYTES, on_bytes=lambda _: None)
+                    incoming.keep()
 
 
 def main(port: int, seed: str, directory: Path) -> None:

@@ -1,4 +1,4 @@
-"""A relay's event directory, brought into the recording store.
+"""A relay's event folders, brought into the recording store.
 
 The directory is what counts; reports only say when to look. In the end every record the relay lists is in the
 store, or its refusal is written down: as a rejected recording where it is a record, as an alarm where a
@@ -6,19 +6,20 @@ file's name already says that it cannot be trusted.
 """
 
 import time
-from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Collection
+from dataclasses import dataclass
 from math import inf
 from typing import Protocol
 
 import structlog
 
-from mms import Client, ServiceFailed, TemporarilyUnavailable
-from service.collector.records.event_folder import Contents, EventFolder
+from mms import AccessDenied, Client, NotFound, ServiceFailed, TemporarilyUnavailable
+from service.collector.records.batch import Batch
+from service.collector.records.event_folders import Contents, EventFolders
 from service.collector.records.formats import Chosen, one_format_an_event
 from service.collector.records.ledger import RecordLedger, WrongListings
 from service.collector.records.life import WHOLE, Life, RecordState, SettlingTimes, in_turn
-from service.collector.records.listing import MOST_IGNORED, Listing, RefusedFile, understand
+from service.collector.records.listing import MOST_IGNORED, Listing, files_by_name, understand
 from service.collector.records.policy import (
     PULL_FAILURES,
     RECORD_POLICY,
@@ -30,10 +31,11 @@ from service.collector.records.policy import (
     failure_of,
     reason_of,
 )
-from service.collector.records.pull import DailyAllowance, beyond_its_end, pull
+from service.collector.records.pull import DailyAllowance
+from service.collector.records.scan import Scan
 from service.configuration.settings import Settings
 from service.plant import Relay
-from service.recording_store.store import RecordingStore, StoredRecording
+from service.recording_store.store import Incoming, RecordingStore
 from service.storage import Repository
 from service.storage.errors import FolderGoneError
 from service.storage.states import AlarmKind
@@ -58,31 +60,6 @@ class RecordAlarms(Protocol):
 
     def keep(self, kind: AlarmKind, subjects: Collection[str]) -> None:
         """Clear the alarms of this kind whose subject is not among these."""
-
-
-@dataclass(frozen=True, slots=True)
-class Scan:
-    """What one scan of a relay's directory came to: names of records, by what became of them.
-
-    listed: all there are.  taken: newly stored or refused for good.  waiting: new ones that are not ready, or
-    are to be tried again soon, or are refused while their event is still to be had in another format.
-    failing: why a pull of them failed, by names, of those that are tried again, soon or late.  held_back:
-    ready ones that wait for another day.  ignored: files that are not taken, with the reason;
-    `ignored_in_all` may be more.  unreachable: why no record could be had at all.  no_folder: why there is
-    none at present; a relay may make it with its first record.  busy: why the relay lists no files for now;
-    all else is empty then, and nothing is known.
-    """
-
-    listed: frozenset[str] = frozenset()
-    taken: tuple[str, ...] = ()
-    waiting: tuple[str, ...] = ()
-    held_back: tuple[str, ...] = ()
-    failing: Mapping[str, str] = field(default_factory=dict)
-    ignored: tuple[RefusedFile, ...] = ()
-    ignored_in_all: int = 0
-    unreachable: str | None = None
-    no_folder: str | None = None
-    busy: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,7 +92,7 @@ class RecordDirectory:
         store: RecordingStore,
         settings: Settings,
         *,
-        folder: EventFolder,
+        folders: EventFolders,
         alarms: RecordAlarms,
         allowance: DailyAllowance,
         on_bytes: Callable[[int], None],
@@ -127,7 +104,7 @@ class RecordDirectory:
         """
         self._relay = relay.name
         self._store = store
-        self._folder = folder
+        self._folders = folders
         self._max_file_bytes = settings.max_file_bytes
         self._record_timeout_s = settings.record_timeout_s
         self._on_bytes = on_bytes
@@ -150,21 +127,21 @@ class RecordDirectory:
         """
         began_s = time.monotonic()
         try:
-            contents = self._folder.contents(client, expected=expected)
+            contents = self._folders.contents(client, expected=expected)
         except (ServiceFailed, TemporarilyUnavailable) as error:
             return self._not_listed(str(error), began_s)
         finally:
             self.listing_s = time.monotonic() - began_s
-        if contents.directory is None:
-            unreachable = self._folder.missing if self._folder.no_files else None
-            return Scan(unreachable=unreachable, no_folder=self._folder.missing)
+        if not contents.folders:
+            unreachable = self._folders.missing if self._folders.no_files else None
+            return Scan(unreachable=unreachable, no_folder=self._folders.missing)
         self._not_listed_since_s = None
-        view = self._view = self._view_of(contents, contents.directory)
+        view = self._view = self._view_of(contents)
         self._ledger.give_up_all_but(view.chosen.states)
         self._settle(view, expected=expected)
         ready, unsteady = self._ready_and_unsteady(view.new)
         self._note_unsteady(unsteady, view.chosen)
-        self._end_incomplete(view, contents.directory, claim)
+        self._end_incomplete(view, claim)
         held_back = self._take_all(
             client, in_turn(ready, time.monotonic()), claim, until_s=began_s + within_s
         )
@@ -192,7 +169,7 @@ class RecordDirectory:
         """
         self._ledger.pull_untimed_again()
 
-    def _view_of(self, contents: Contents, directory: str) -> _View:
+    def _view_of(self, contents: Contents) -> _View:
         """Return what the listing comes to.
 
         Relays list hundreds of records again and again, and nearly every listing is as the one before.
@@ -203,7 +180,7 @@ class RecordDirectory:
                 return before
             listing, states = before.listing, before.states
         else:
-            listing = understand(contents.entries, directory)
+            listing = understand(contents.folders)
             self._note_refused_files(listing)
             states = self._ledger.follow(listing.records)
             self._wrong_listings.prune(state.name for state in states)
@@ -261,13 +238,14 @@ class RecordDirectory:
             lacking = {state.name for state in chosen.states if not state.in_store}
             self._alarms.keep(AlarmKind.FILE_UNSTEADY, lacking)
 
-    def _end_incomplete(self, view: _View, directory: str, claim: ClaimRequest) -> None:
+    def _end_incomplete(self, view: _View, claim: ClaimRequest) -> None:
         """Take another format in place of a record whose files are not coming, or refuse the record."""
         for state in view.new:
             if state.life is not Life.INCOMPLETE:
                 continue
             missing = state.record.missing[0]
-            reason = f"{state.name}: expected a {missing} file in {directory or 'the root'}, found none"
+            directory = state.record.directory or "the root"
+            reason = f"{state.name}: expected a {missing} file in {directory}, found none"
             if state in view.chosen.replaceable:
                 self._ledger.give_up(state)
                 log.warning("another format is taken", relay=self._relay, record=state.name, reason=reason)
@@ -278,36 +256,70 @@ class RecordDirectory:
         self, client: Client, ready: list[RecordState], claim: ClaimRequest, *, until_s: float
     ) -> tuple[str, ...]:
         """Pull what is ready as far as the day's limit allows. Return the names of those that must wait."""
-        for number, state in enumerate(ready):
-            sizes = tuple(file.size for file in state.record.files)
-            if time.monotonic() + PULL_MARGIN * self._takes_s(sum(sizes)) > until_s:
-                return ()
-            too_large = max(sizes) > self._max_file_bytes
-            if not too_large and not self._allowance.allows(sizes, time.time_ns()):
-                self._alarms.raise_alarm(
-                    AlarmKind.DAILY_LIMIT,
-                    "",
-                    f"expected at most {self._allowance.limit_bytes} bytes a day (setting "
-                    f"max_relay_bytes_per_day), found more; new records wait in the relay until midnight UTC",
-                )
-                return tuple(late.name for late in ready[number:])
-            self._take(client, state, claim)
+        with Batch(
+            client,
+            self._store,
+            self._allowance,
+            max_file_bytes=self._max_file_bytes,
+            on_bytes=self._on_bytes,
+            listing_s=self.listing_s,
+        ) as batch:
+            for number, state in enumerate(ready):
+                sizes = tuple(file.size for file in state.record.files)
+                takes_s = PULL_MARGIN * self._takes_s(sum(sizes)) + self.listing_s
+                if time.monotonic() + takes_s > until_s:
+                    break
+                too_large = max(sizes) > self._max_file_bytes
+                if not too_large and not self._allowance.allows(sizes, time.time_ns()):
+                    self._keep_all(client, batch, claim)
+                    self._alarms.raise_alarm(
+                        AlarmKind.DAILY_LIMIT,
+                        "",
+                        f"expected at most {self._allowance.limit_bytes} bytes a day (setting "
+                        "max_relay_bytes_per_day), found more; new records wait in the relay until midnight "
+                        "UTC",
+                    )
+                    return tuple(late.name for late in ready[number:])
+                # A record that failed before may end the visit: what was fetched is kept first.
+                if batch.is_due() or state.attempts:
+                    self._keep_all(client, batch, claim)
+                self._fetch(batch, state, claim)
+            self._keep_all(client, batch, claim)
         self._alarms.keep(AlarmKind.DAILY_LIMIT, ())
         return ()
 
-    def _take(self, client: Client, state: RecordState, claim: ClaimRequest) -> None:
-        """Pull and store one record. Where that fails, refuse it or leave it for the next scan."""
+    def _fetch(self, batch: Batch, state: RecordState, claim: ClaimRequest) -> None:
+        """Fetch one record. Where that fails, refuse it or leave it for the next scan."""
         self._ledger.announce(state)
+        began_s = time.monotonic()
         try:
-            stored = self._pull(client, state)
+            batch.fetch(state)
         except PULL_FAILURES as error:
-            failure = failure_of(error)
-            self._note_failure(state, failure, error, claim)
-            if failure in VISIT_ENDS:
-                raise
+            self._fail(state, error, claim)
+        else:
+            self._bytes_per_s = state.record.size_bytes / (time.monotonic() - began_s)
+
+    def _keep_all(self, client: Client, batch: Batch, claim: ClaimRequest) -> None:
+        """Keep what was fetched and is still listed as it was; the rest fails. Raises MmsError (the link)."""
+        if not batch.fetched:
             return
         try:
-            self._ledger.keep(state, stored, claim(state.name))
+            listed = files_by_name(self._folders.listed_now(client).folders)
+        except (AccessDenied, NotFound, ServiceFailed, TemporarilyUnavailable) as error:
+            for state, _ in batch.fetched:
+                self._fail(state, error, claim)
+        else:
+            for state, incoming in batch.fetched:
+                try:
+                    batch.check(state.record, incoming, listed)
+                    self._keep(state, incoming, claim)
+                except PULL_FAILURES as error:
+                    self._fail(state, error, claim)
+        batch.clear()
+
+    def _keep(self, state: RecordState, incoming: Incoming, claim: ClaimRequest) -> None:
+        try:
+            self._ledger.keep(state, incoming.keep(), claim(state.name))
         except FolderGoneError as error:  # somebody deleted the same content just now
             log.info("record pulled once more", relay=self._relay, record=state.name, reason=str(error))
 
@@ -315,19 +327,12 @@ class RecordDirectory:
         """Return how long a pull of so many bytes takes, by the latest one; infinite where there was none."""
         return size / self._bytes_per_s if self._bytes_per_s else inf
 
-    def _pull(self, client: Client, state: RecordState) -> StoredRecording:
-        began_s = time.monotonic()
-        stored = pull(
-            client, state.record, self._store, max_file_bytes=self._max_file_bytes, on_bytes=self._received
-        )
-        self._bytes_per_s = sum(file.size for file in state.record.files) / (time.monotonic() - began_s)
-        for file in state.record.files:
-            self._allowance.charge(beyond_its_end(file.size), time.time_ns())
-        return stored
-
-    def _received(self, number_of_bytes: int) -> None:
-        self._on_bytes(number_of_bytes)
-        self._allowance.charge(number_of_bytes, time.time_ns())
+    def _fail(self, state: RecordState, error: Exception, claim: ClaimRequest) -> None:
+        """Note a failed attempt. Raises the error again where it ends the visit."""
+        failure = failure_of(error)
+        self._note_failure(state, failure, error, claim)
+        if failure in VISIT_ENDS:
+            raise error
 
     def _note_failure(
         self, state: RecordState, failure: Failure, error: Exception, claim: ClaimRequest

@@ -5,7 +5,8 @@ raw (CR_10007.CEV) and filtered (C4_10007.CEV); others give all formats of an ev
 """
 
 import re
-from collections.abc import Iterable
+from collections import Counter
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from service.collector.records.life import Life, RecordState
@@ -35,7 +36,8 @@ def one_format_an_event(states: Iterable[RecordState]) -> Chosen:
 
     COMTRADE comes before event reports, unless the event is in the store in another format. Incomplete
     records are taken only where there is nothing else. Refused ones are not pulled: they stand for their
-    event only where each of its formats is refused.
+    event only where each of its formats is refused. Where two folders have a record of one name and format,
+    each folder numbers its own events.
     """
     events: dict[str, list[RecordState]] = {}
     for state in states:
@@ -44,7 +46,7 @@ def one_format_an_event(states: Iterable[RecordState]) -> Chosen:
     chosen: list[RecordState] = []
     passed_over: list[RefusedFile] = []
     replaceable: set[RecordState] = set()
-    for same in events.values():
+    for same in (each for listed in events.values() for each in _apart(listed)):
         best = min(same, key=_order)
         chosen.append(best)
         others = [each for each in same if each is not best]
@@ -61,6 +63,18 @@ def one_format_an_event(states: Iterable[RecordState]) -> Chosen:
             state for state in chosen if writes_comtrade and _rank(state.record) >= _EVENT_REPORT
         ),
     )
+
+
+def _apart(same: list[RecordState]) -> Iterator[list[RecordState]]:
+    """Yield the records of each folder by themselves, if one of their formats is there twice; else all."""
+    formats = Counter((state.name.upper(), _rank(state.record)) for state in same)
+    if max(formats.values()) == 1:
+        yield same
+        return
+    folders: dict[str, list[RecordState]] = {}
+    for state in same:
+        folders.setdefault(state.record.directory, []).append(state)
+    yield from folders.values()
 
 
 def _order(state: RecordState) -> tuple[bool, bool, bool, int, str]:

@@ -1,10 +1,10 @@
-"""Groups the files of a relay's directory listing into records, and checks their names.
+"""Groups the files that a relay's folders list into records, and checks their names.
 
 A relay's file names are hostile until checked here: nothing later makes a local path of them or prints them
 raw.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -40,11 +40,20 @@ class ListedFile:
 
 
 @dataclass(frozen=True, slots=True)
+class FolderListing:
+    """What the relay lists of one folder."""
+
+    directory: str
+    entries: Sequence[FileEntry]
+
+
+@dataclass(frozen=True, slots=True)
 class ListedRecord:
-    """The files of one recording in one format, as listed. `name` is their common stem."""
+    """The files of one recording in one format, as a folder lists them. `name` is their common stem."""
 
     name: str
     files: tuple[ListedFile, ...]
+    directory: str = ""
 
     @property
     def size_bytes(self) -> int:
@@ -82,7 +91,7 @@ class RefusedFile:
 
 @dataclass(frozen=True, slots=True)
 class Listing:
-    """The contents of a relay's directory, sorted into records and other files.
+    """The contents of a relay's folders, sorted into records and other files.
 
     ignored: files that belong to no recording, at most MOST_IGNORED of `ignored_in_all`.
     """
@@ -93,17 +102,49 @@ class Listing:
     ignored_in_all: int = 0
 
 
-def understand(entries: Iterable[FileEntry], directory: str) -> Listing:
-    """Group the listed files of `directory` into records.
+def understand(folders: Iterable[FolderListing]) -> Listing:
+    """Group the listed files of the folders into records.
 
     Files whose name cannot be trusted, or that claim another's name, are refused; files of other kinds are
-    ignored.
+    ignored. So is a record whose files an earlier folder lists with the same names, sizes and times.
     """
+    records: dict[tuple[tuple[str, int, int], ...], ListedRecord] = {}
+    refused: list[RefusedFile] = []
+    ignored: list[RefusedFile] = []
+    ignored_in_all = 0
+    for folder in folders:
+        listing = _understand_one(folder)
+        refused += listing.refused
+        ignored += listing.ignored
+        ignored_in_all += listing.ignored_in_all
+        for record in listing.records:
+            files = tuple((file.local_name, file.size, file.modified_ns) for file in record.files)
+            first = records.setdefault(files, record)
+            if first is not record:
+                reason = f"in {record.directory} with the same sizes and times as in {first.directory}"
+                ignored.append(RefusedFile(record.file_names, reason))
+                ignored_in_all += 1
+    return Listing(tuple(records.values()), tuple(refused), tuple(ignored[:MOST_IGNORED]), ignored_in_all)
+
+
+def files_by_name(folders: Iterable[FolderListing]) -> Mapping[str, ListedFile]:
+    """Return the files of records that the folders list, by the names to ask the relay for."""
+    files = (
+        _listed_file(entry, folder.directory)
+        for folder in folders
+        for entry in folder.entries
+        if is_of_a_record(entry.name)
+    )
+    return {file.remote_name: file for file in files}
+
+
+def _understand_one(folder: FolderListing) -> Listing:
+    directory = folder.directory
     groups: dict[str, dict[str, ListedFile]] = {}
     refused: list[RefusedFile] = []
     ignored: list[RefusedFile] = []
     ignored_in_all = 0
-    for entry in entries:
+    for entry in folder.entries:
         if not is_of_a_record(entry.name):
             ignored_in_all += 1
             if len(ignored) < MOST_IGNORED:
@@ -120,17 +161,21 @@ def understand(entries: Iterable[FileEntry], directory: str) -> Listing:
         if reason is not None:
             refused.append(RefusedFile(name=ascii(entry.name)[:LONGEST_NAME], reason=reason))
             continue
-        files[suffix] = ListedFile(
-            remote_name=remote_name(entry.name, directory),
-            local_name=local_name,
-            size=entry.size,
-            modified_ns=entry.modified_ns,
-        )
+        files[suffix] = _listed_file(entry, directory)
     records = tuple(
-        ListedRecord(name=_stem(files), files=tuple(files[suffix] for suffix in sorted(files)))
+        ListedRecord(_stem(files), tuple(files[suffix] for suffix in sorted(files)), directory)
         for files in groups.values()
     )
     return Listing(records, tuple(refused), tuple(ignored), ignored_in_all)
+
+
+def _listed_file(entry: FileEntry, directory: str) -> ListedFile:
+    return ListedFile(
+        remote_name=remote_name(entry.name, directory),
+        local_name=last_component(entry.name),
+        size=entry.size,
+        modified_ns=entry.modified_ns,
+    )
 
 
 def is_of_a_record(name: str) -> bool:

@@ -19,7 +19,7 @@ from mms import (
     TemporarilyUnavailable,
     Timeout,
 )
-from service.collector.records.pull import RecordTooLargeError
+from service.collector.records.errors import RecordReplacedError, RecordTooLargeError
 from service.recording_store.store import RecordingStoreError
 from service.storage.states import AlarmKind
 from service.timing.backoff import Backoff
@@ -47,6 +47,7 @@ _KINDS: dict[type[Exception], Failure] = {
     # What one record can do wrong while the link is fine.
     FileSizeMismatch: Failure.NOT_AS_LISTED,
     NotFound: Failure.NOT_AS_LISTED,
+    RecordReplacedError: Failure.NOT_AS_LISTED,
     # What ends the visit, and may be due to the record that was asked for.
     ConnectionLost: Failure.LINK_LOST,
     Timeout: Failure.LINK_LOST,
@@ -147,6 +148,7 @@ class RecordPolicy:
     folder_search_s, expected_search_s: between two searches for a folder that was not there; where a report
     said that a record was made, which the folder may have been made for.
     no_files_search_s: between two searches at a relay that seems to have no file service.
+    other_folder_s: between two looks for a second folder of recordings.
     """
 
     rules: Mapping[Failure, FailureRule] = field(default_factory=lambda: DEFAULT_RULES)
@@ -159,6 +161,7 @@ class RecordPolicy:
     folder_search_s: float = 10.0
     expected_search_s: float = 0.5
     no_files_search_s: float = 60.0
+    other_folder_s: float = 60.0
 
 
 RECORD_POLICY = RecordPolicy()

@@ -1,4 +1,4 @@
-"""Pulls one record from a relay into the recording store: every byte of every file, or nothing.
+"""Fetches one record from a relay into a place in the recording store: every byte of every file.
 
 A relay may send only so much in a day, so that one faulty relay cannot fill the disk for all.
 """
@@ -8,15 +8,12 @@ from typing import BinaryIO
 
 from core.units import NANOSECONDS_PER_DAY
 from mms import Client
+from service.collector.records.errors import RecordTooLargeError
 from service.collector.records.listing import ListedRecord
-from service.recording_store.store import RecordingStore, StoredRecording
+from service.recording_store.store import Incoming
 
 BLOCK_BYTES = 4096
 """The smallest file takes so much of a disk, and counts for so much."""
-
-
-class RecordTooLargeError(ValueError):
-    """The relay lists a file that is larger than a setting allows."""
 
 
 class _Counted:
@@ -34,16 +31,15 @@ class _Counted:
 def pull(
     client: Client,
     record: ListedRecord,
-    store: RecordingStore,
+    incoming: Incoming,
     *,
     max_file_bytes: int,
     on_bytes: Callable[[int], None],
-) -> StoredRecording:
-    """Stream the files of one record into the store; `on_bytes` gets the size of every part that came.
+) -> None:
+    """Stream the files of one record to where they arrive; `on_bytes` gets the size of every part that came.
 
-    The store keeps the record only when all files are there. Raises RecordTooLargeError, MmsError
-    (FileSizeMismatch when a file is not as long as listed), RecordingStoreError for a name the store refuses,
-    OSError when the disk does.
+    Raises RecordTooLargeError, MmsError (FileSizeMismatch when a file is not as long as listed),
+    RecordingStoreError for a name the store refuses, OSError when the disk does.
     """
     for file in record.files:
         if file.size > max_file_bytes:
@@ -51,11 +47,9 @@ def pull(
                 f"{file.local_name}: expected at most {max_file_bytes} bytes (setting max_file_bytes), "
                 f"found {file.size}"
             )
-    with store.incoming() as incoming:
-        for file in record.files:
-            with incoming.create(file.local_name) as sink:
-                client.download(file.remote_name, _Counted(sink, on_bytes), expected_size=file.size)
-        return incoming.keep()
+    for file in record.files:
+        with incoming.create(file.local_name) as sink:
+            client.download(file.remote_name, _Counted(sink, on_bytes), expected_size=file.size)
 
 
 class DailyAllowance:

@@ -15,7 +15,7 @@ from mms import (
     ControlModel,
     FunctionalConstraint,
 )
-from service.collector.records.event_folder import ROOT
+from service.collector.records.event_folders import ROOT
 from service.collector.records.listing import RefusedFile
 from service.collector.session.browsing import BUSY, REFUSALS, browse
 from service.collector.session.relay_alarms import RelayAlarms

@@ -12,9 +12,10 @@ import structlog
 from sqlalchemy.exc import SQLAlchemyError
 
 from mms import Client, CredentialFileError, MmsError, ProtocolError
-from service.collector.records.directory import RecordDirectory, Scan
-from service.collector.records.event_folder import EventFolder
+from service.collector.records.directory import RecordDirectory
+from service.collector.records.event_folders import EventFolders
 from service.collector.records.pull import DailyAllowance
+from service.collector.records.scan import Scan
 from service.collector.session.clock_monitor import ClockMonitor
 from service.collector.session.discovery import Discovery
 from service.collector.session.link import Link
@@ -81,7 +82,7 @@ class RelaySession:
         self._subscription = ReportSubscription(
             relay.name, repository, self._link, retry_s=policy.report_retry_s
         )
-        self._folder = EventFolder(
+        self._folders = EventFolders(
             relay.name,
             settings.events_directory,
             relay.overrides.events_directory,
@@ -93,7 +94,7 @@ class RelaySession:
             repository,
             store,
             settings,
-            folder=self._folder,
+            folders=self._folders,
             alarms=alarms,
             allowance=allowance,
             on_bytes=self._link.received,
@@ -237,7 +238,7 @@ class RelaySession:
         acquisition = self._discovery.discover(client)
         self._triggers.use(acquisition)
         self._clock.begin(acquisition.measurands)
-        self._folder.begin()
+        self._folders.begin()
         if self._metering is not None:
             self._metering.begin(acquisition.measurands)
         self._subscription.begin(client, ReportQueue(self._wake_up), acquisition)
@@ -246,7 +247,7 @@ class RelaySession:
     def _remarks(self) -> list[str]:
         """Return what cannot be had of the relay at present."""
         busy = None if self._busy is None else f"no recording is fetched for now: {self._busy}"
-        reasons = (self._subscription.refusal, busy, self._folder.missing, self._folder.unread)
+        reasons = (self._subscription.refusal, busy, self._folders.missing)
         return [reason for reason in reasons if reason is not None]
 
     def _wait(self, client: Client, longest_s: float) -> None:
@@ -311,7 +312,7 @@ class RelaySession:
     def _note_findings(self, scan: Scan) -> None:
         self._discovery.save(
             report_control=self._subscription.report_control,
-            directory=self._folder.directory,
+            directory=self._folders.directory,
             remarks=self._remarks(),
             ignored=scan.ignored,
             ignored_in_all=scan.ignored_in_all,

@@ -27,7 +27,7 @@ from mms import (
     TemporarilyUnavailable,
     Timestamp,
 )
-from service.collector.records.directory import Scan
+from service.collector.records.scan import Scan
 from service.collector.triggers.request_deadlines import RequestDeadlines, UnansweredRequests
 from service.collector.triggers.series import NoSeriesError, SeriesUnderWay, rhythm_of
 from service.plant import Acquisition, Relay, TriggerAction, acquisition_from_scl

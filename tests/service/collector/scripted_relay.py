@@ -1,7 +1,9 @@
 """A relay for the collector's tests: the real model over real MMS, doing exactly what the test says."""
 
 import ctypes
+import os
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -49,6 +51,7 @@ class ScriptedRelay:
     shifts: a file of SHIFTY is a byte longer whenever it is opened than it was when it was listed.
     clock_offset_s: it stamps changes of RB01 with a clock so far ahead; None: it stamps nothing.
     unreadable: what it answers for each of these data objects in place of values.
+    on_file_request: is told of each request for a file or listing; what it answers is the answer.
     unreadable_while_set: what it answers for the status of RB01 while that is set.
     """
 
@@ -66,6 +69,7 @@ class ScriptedRelay:
     clock_quality: int = 0x0A
     unreadable: dict[str, DataAccessError] = field(default_factory=dict)
     unreadable_while_set: DataAccessError | None = None
+    on_file_request: Callable[[FileRequest], FileAnswer | None] | None = None
     edges: int = 0
     records: int = 0
     listings: int = 0
@@ -119,12 +123,20 @@ class ScriptedRelay:
     def write_file(self, name: str, content: bytes) -> None:
         (self.events / name).write_bytes(content)
 
+    def write_untimed(self, name: str, content: bytes) -> None:
+        """A file that is listed with the time 0, as relays without file times do."""
+        self.write_file(name, content)
+        os.utime(self.events / name, (0, 0))
+
     def announce(self) -> None:
         """RcdMade and FltNum, as a relay sets them when a record is ready."""
         self.server.update_many({f"{RECORD_MADE}.stVal": False})
         self.server.update_many({f"{RECORD_MADE}.stVal": True, f"{FAULT_NUMBER}.stVal": self.records})
 
     def _answer(self, request: FileRequest) -> FileAnswer:
+        told = None if self.on_file_request is None else self.on_file_request(request)
+        if told is not None:
+            return told
         self.listings += request.operation is FileOperation.LIST
         if self.shifts and request.operation is FileOperation.OPEN and "SHIFTY" in request.path.name:
             with request.path.open("ab") as file:

@@ -8,7 +8,7 @@ import pytest
 from core.diagnosis.verdict import Verdict
 from service.collector.records.ledger import RecordLedger
 from service.collector.records.life import Life, RecordState
-from service.collector.records.listing import ListedRecord, understand
+from service.collector.records.listing import ListedRecord
 from service.plant import Plant
 from service.recording_store.store import RecordingStore
 from service.retention.deletion import delete_recording, remove_discarded_folders
@@ -18,7 +18,7 @@ from service.storage.records import SERVICE, RecordingEntry, RemoteRecord
 from service.storage.states import DeletedBy, RecordingRequestState, RecordingState
 from testing.service.job_runner import RUNNER
 from testing.service.plants import NOW_NS, SECOND_NS, fault, two_motor_plant
-from tests.service.collector.records.test_listing import Entry
+from tests.service.collector.records.test_listing import Entry, understood
 
 RELAY, MOTOR = "A1_SEL710", "PUMP-A1"
 REMOTE = RemoteRecord("HR_1", 30, NOW_NS)
@@ -46,7 +46,7 @@ def folders(store: RecordingStore) -> set[str]:
 
 def listed(name: str, modified_ns: int = NOW_NS) -> ListedRecord:
     entries = [Entry(f"{name}.CFG", 10, modified_ns), Entry(f"{name}.DAT", 20, modified_ns)]
-    return understand(entries, "EVENTS").records[0]
+    return understood(entries).records[0]
 
 
 def life(state: RecordState) -> Life:

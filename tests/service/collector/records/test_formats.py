@@ -8,19 +8,19 @@ import pytest
 from core.recordings import read
 from service.collector.records.formats import one_format_an_event
 from service.collector.records.life import Life, RecordState
-from service.collector.records.listing import understand
+from service.collector.records.listing import FolderListing, understand
 from service.storage.states import AlarmKind, RecordingRequestState, RecordingState
 from testing.relays.simulated import IED, scenario_of, simulated
 from testing.waiting import eventually
 from tests.service.collector.conftest import Bench
 from tests.service.collector.expectations import at, expecting
 from tests.service.collector.records.policies import WRONG_IN_A_ROW, with_first_pause
-from tests.service.collector.records.test_listing import listed
+from tests.service.collector.records.test_listing import Entry, listed, understood
 from tests.service.collector.scripted_relay import NAME, ScriptedRelay
 
 
 def states_of(*names: str) -> list[RecordState]:
-    return [RecordState(record) for record in understand(listed(*names), "EVENTS").records]
+    return [RecordState(record) for record in understood(listed(*names)).records]
 
 
 def chosen(*names: str) -> list[str]:
@@ -42,6 +42,19 @@ def chosen(*names: str) -> list[str]:
 )
 def test_one_format_of_each_event_is_taken(names: list[str], taken: list[str]) -> None:
     assert chosen(*names) == taken
+
+
+def test_folders_that_number_their_own_events_are_told_apart() -> None:
+    names = ["HR_10007.CFG", "HR_10007.DAT"]
+    events = FolderListing("EVENTS", [*map(Entry, names), Entry("CR_10007.CEV")])
+    comtrade = FolderListing("COMTRADE", [Entry(name, modified_ns=9) for name in names])
+    states = [RecordState(record) for record in understand([events, comtrade]).records]
+    taken = one_format_an_event(states).states
+    assert [(state.record.directory, state.name) for state in taken] == [
+        ("EVENTS", "HR_10007"),
+        ("COMTRADE", "HR_10007"),
+    ]
+    assert len(one_format_an_event(states[1:]).states) == 1, "one event in two formats, in two folders"
 
 
 def report_and_comtrade() -> tuple[RecordState, RecordState]:

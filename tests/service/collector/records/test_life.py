@@ -7,16 +7,16 @@ import pytest
 from mms import errors
 from service.collector.records.ledger import RecordLedger
 from service.collector.records.life import Life, RecordState, SettlingTimes, in_turn
-from service.collector.records.listing import ListedRecord, understand
+from service.collector.records.listing import ListedRecord
 from service.collector.records.policy import DEFAULT_RULES, Failure
 from tests.service.collector.conftest import MOTOR, Bench
 from tests.service.collector.records.policies import WRONG_IN_A_ROW
-from tests.service.collector.records.test_listing import Entry, listed
+from tests.service.collector.records.test_listing import Entry, listed, understood
 from tests.service.collector.scripted_relay import NAME
 
 
 def whole(size: int = 100) -> ListedRecord:
-    return understand([Entry("X.CFG", size), Entry("X.DAT", size)], "EVENTS").records[0]
+    return understood([Entry("X.CFG", size), Entry("X.DAT", size)]).records[0]
 
 
 class Looks:
@@ -53,7 +53,7 @@ def test_how_long_it_must_stand_still_may_change_between_two_looks(looks: Looks)
 
 
 def test_a_record_without_its_data_is_given_up_in_the_end(looks: Looks) -> None:
-    (half,) = understand(listed("X.CFG"), "EVENTS").records
+    (half,) = understood(listed("X.CFG")).records
     assert looks.at(0.0, half) is Life.SETTLING
     assert looks.at(29.0, half) is Life.SETTLING
     assert looks.at(30.0, half) is Life.INCOMPLETE
@@ -71,7 +71,7 @@ def test_a_record_that_goes_on_changing_is_waited_for_no_longer(looks: Looks) ->
 
 def test_another_format_of_its_name_does_not_hide_how_long_it_changes(bench: Bench) -> None:
     ledger = RecordLedger(NAME, MOTOR, bench.repository)
-    (combined,) = understand(listed("X.CFF"), "EVENTS").records
+    (combined,) = understood(listed("X.CFF")).records
     for size, now_s in ((100, 0.0), (200, 70.0)):
         state, other = ledger.follow([whole(size), combined])
         ledger.pass_over([other])
@@ -80,7 +80,7 @@ def test_another_format_of_its_name_does_not_hide_how_long_it_changes(bench: Ben
 
 
 def state_of(name: str) -> RecordState:
-    return RecordState(understand(listed(f"{name}.CFG", f"{name}.DAT"), "EVENTS").records[0])
+    return RecordState(understood(listed(f"{name}.CFG", f"{name}.DAT")).records[0])
 
 
 def fail(state: RecordState, failure: Failure, now_s: float, reason: str = "") -> None:

@@ -11,10 +11,10 @@ from sqlalchemy import insert
 from core.units import NANOSECONDS_PER_DAY
 from mms import Client
 from service.collector.records.directory import RecordDirectory
-from service.collector.records.event_folder import EventFolder
+from service.collector.records.event_folders import EventFolders
 from service.collector.records.ledger import MOST_NAMES, WrongListings
 from service.collector.records.life import remote_of
-from service.collector.records.listing import ListedRecord, understand
+from service.collector.records.listing import FolderListing, ListedRecord, understand
 from service.collector.records.policy import RECORD_POLICY
 from service.collector.records.pull import DailyAllowance
 from service.collector.session.relay_alarms import RelayAlarms
@@ -44,7 +44,7 @@ def directory(bench: Bench) -> RecordDirectory:
         bench.repository,
         bench.store,
         bench.settings,
-        folder=EventFolder(NAME, "EVENTS"),
+        folders=EventFolders(NAME, "EVENTS"),
         alarms=RelayAlarms(NAME, bench.repository),
         allowance=DailyAllowance(10**9),
         on_bytes=lambda _number: None,
@@ -102,7 +102,10 @@ def test_memory_does_not_grow_while_a_relay_lists_thousands_of_records(
     sizes = []
     for number in range(ROUNDS):
         list_round(relay, number)
-        listed = [remote_of(record) for record in understand(client.files("EVENTS"), "EVENTS").records]
+        listed = [
+            remote_of(record)
+            for record in understand([FolderListing("EVENTS", client.files("EVENTS"))]).records
+        ]
         store_all_but_one(bench, listed)
         assert scan(directory, client) == (listed[-1].name,)
         del listed

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from mms import Client
-from service.collector.records.event_folder import Contents, EventFolder
+from service.collector.records.event_folders import Contents, EventFolders
 from service.collector.records.policy import RECORD_POLICY
 from service.plant import Overrides
 from service.storage.states import LinkState, RecordingRequestState
@@ -32,7 +32,7 @@ def write(relay: ScriptedRelay, *names: str) -> None:
         path.write_bytes(b"content")
 
 
-def found(client: Client, folder: EventFolder) -> Contents:
+def found(client: Client, folder: EventFolders) -> Contents:
     folder.begin()
     return folder.contents(client)
 
@@ -47,14 +47,14 @@ def found(client: Client, folder: EventFolder) -> Contents:
         (["RECORDS/FAULTS/X.CFF"], "RECORDS/FAULTS"),
         (["X.CFG", "X.DAT"], ""),
         (["EVENTS/HISTORY.TXT", "COMTRADE/X.CFG"], "COMTRADE"),
-        (["EVENTS/X.CEV", "COMTRADE/X.CFG"], "EVENTS"),
+        (["EVENTS/X.CEV", "COMTRADE/X.CFG"], "EVENTS, COMTRADE"),
         (["FAULTS\x1b[2J/X.CFG", "GOOD/X.CFG"], "GOOD"),
         (["F" * 150 + "/X.CFG", "GOOD/X.CFG"], "GOOD"),
     ],
 )
 def test_the_folder_is_found(client: Client, relay: ScriptedRelay, names: list[str], directory: str) -> None:
     write(relay, *names)
-    folder = EventFolder(NAME, "EVENTS")
+    folder = EventFolders(NAME, "EVENTS")
     assert found(client, folder).directory == directory
     assert folder.missing is None
     assert found(client, folder).directory == directory
@@ -62,42 +62,43 @@ def test_the_folder_is_found(client: Client, relay: ScriptedRelay, names: list[s
 
 def test_the_setting_comes_first_and_an_override_alone(client: Client, relay: ScriptedRelay) -> None:
     write(relay, "EVENTS/X.CFG", "OTHER/HISTORY.TXT", "THIRD/HISTORY.TXT")
-    assert found(client, EventFolder(NAME, "OTHER")).directory == "OTHER", "empty as it is"
-    assert found(client, EventFolder(NAME, "NOWHERE")).directory == "EVENTS"
-    assert found(client, EventFolder(NAME, "OTHER", "THIRD")).directory == "THIRD"
-    nowhere = EventFolder(NAME, "OTHER", "FOURTH")
+    assert found(client, EventFolders(NAME, "OTHER")).directory == "OTHER", "empty as it is"
+    assert found(client, EventFolders(NAME, "NOWHERE")).directory == "EVENTS"
+    assert found(client, EventFolders(NAME, "OTHER", "THIRD")).directory == "THIRD"
+    nowhere = EventFolders(NAME, "OTHER", "FOURTH")
     assert found(client, nowhere).directory is None
     assert nowhere.missing == "no directory of event recordings: looked for FOURTH"
     assert not nowhere.no_files
 
 
-def test_recordings_in_a_second_folder_are_told(client: Client, relay: ScriptedRelay) -> None:
+def test_two_folders_are_read_as_one(client: Client, relay: ScriptedRelay) -> None:
     write(relay, "EVENTS/X.CEV")
-    folder = EventFolder(NAME, "EVENTS")
-    assert found(client, folder).directory == "EVENTS"
-    assert folder.unread is None
+    folders = EventFolders(NAME, "EVENTS")
+    assert found(client, folders).directory == "EVENTS"
     write(relay, "COMTRADE/X.CFG")
-    assert found(client, folder).directory == "EVENTS"
-    assert "recordings in COMTRADE are not fetched, only those in EVENTS" in (folder.unread or "")
-    (relay.root / "COMTRADE" / "X.CFG").unlink()
+    assert found(client, folders).directory == "EVENTS, COMTRADE"
+    listed = {entry.name for folder in folders.contents(client).folders for entry in folder.entries}
+    assert listed == {"EVENTS/X.CEV", "COMTRADE/X.CFG"}
     (relay.root / "EVENTS" / "X.CEV").unlink()
-    (relay.root / "COMTRADE").rmdir()
-    (relay.root / "EVENTS").rmdir()
-    assert found(client, folder).directory is None
-    assert folder.unread is None
+    assert found(client, folders).directory == "COMTRADE"
+    meant = EventFolders(NAME, "EVENTS", "EVENTS")
+    assert found(client, meant).directory == "EVENTS", "somebody has decided"
+
+
+def test_a_second_folder_that_comes_later_is_found(client: Client, relay: ScriptedRelay) -> None:
+    write(relay, "EVENTS/X.CEV")
+    hurried = replace(RECORD_POLICY, other_folder_s=0.2)
+    folders = EventFolders(NAME, "EVENTS", policy=hurried)
+    assert folders.contents(client).directory == "EVENTS"
     write(relay, "COMTRADE/X.CFG")
-    meant = EventFolder(NAME, "EVENTS", "COMTRADE")
-    assert found(client, meant).directory == "COMTRADE"
-    assert meant.unread is None, "somebody has decided"
+    assert eventually(lambda: folders.contents(client).directory == "EVENTS, COMTRADE", 2)
 
 
-def test_a_second_folder_is_told_of_the_relay(bench: Bench, relay: ScriptedRelay) -> None:
-    write(relay, "EVENTS/X.CEV", "COMTRADE/X.CFG")
+def test_records_of_both_folders_are_stored(bench: Bench, relay: ScriptedRelay) -> None:
+    write(relay, "EVENTS/HR_1.CFG", "EVENTS/HR_1.DAT", "COMTRADE/HR_2.CFG", "COMTRADE/HR_2.DAT")
     with bench.session():
-        assert eventually(
-            lambda: "COMTRADE are not fetched" in (bench.repository.relay(NAME).link_reason or "")
-        )
-        assert bench.link() is LinkState.UP
+        assert eventually(lambda: bench.is_stored("HR_1") and bench.is_stored("HR_2"))
+        assert bench.repository.relay(NAME).link_reason is None
 
 
 def test_a_trigger_without_a_folder_names_what_was_looked_for(bench: Bench, relay: ScriptedRelay) -> None:
@@ -113,12 +114,13 @@ def test_a_trigger_without_a_folder_names_what_was_looked_for(bench: Bench, rela
 
 def test_of_empty_folders_the_one_that_gets_a_recording_is_it(client: Client, relay: ScriptedRelay) -> None:
     write(relay, "EVENTS/HISTORY.TXT", "COMTRADE/README.TXT")
-    folder = EventFolder(NAME, "EVENTS")
-    assert folder.contents(client).directory == "EVENTS"
+    folder = EventFolders(NAME, "EVENTS")
+    assert folder.contents(client).directory == "EVENTS, COMTRADE"
     write(relay, "COMTRADE/X.CFG")
     assert folder.contents(client).directory == "COMTRADE", "without another search"
     write(relay, "EVENTS/Y.CFG")
-    assert folder.contents(client).directory == "COMTRADE", "from now on"
+    folder.begin()
+    assert folder.contents(client).directory == "COMTRADE, EVENTS"
 
 
 def test_a_folder_that_goes_and_comes(bench: Bench, relay: ScriptedRelay) -> None:

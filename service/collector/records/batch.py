@@ -1,0 +1,134 @@
+"""Records that were fetched together and are kept together, once the relay lists them as before.
+
+A relay whose numbering begins anew writes a new record over an old one of the same name, maybe while that is
+fetched: a .CFG of one record would come with the .DAT of another. So the relay is asked for its listing once
+more before anything is kept. One listing serves all records that were fetched within a short time.
+"""
+
+import time
+from collections.abc import Callable, Mapping
+from contextlib import ExitStack
+from hashlib import sha256
+from types import TracebackType
+from typing import Self
+
+from mms import Client
+from service.collector.records.errors import RecordReplacedError
+from service.collector.records.life import RecordState
+from service.collector.records.listing import ListedFile, ListedRecord
+from service.collector.records.pull import DailyAllowance, beyond_its_end, pull
+from service.recording_store.store import Incoming, RecordingStore
+
+BATCH_S = 0.25
+"""What was fetched waits about so long for the listing that confirms it; if the link ends, it comes anew."""
+
+LISTINGS_A_BATCH = 4.0
+"""It waits so many times as long as a listing takes, where that is longer."""
+
+
+class Batch:
+    """Records fetched since the last confirmation. What is not kept is removed when the block ends."""
+
+    def __init__(
+        self,
+        client: Client,
+        store: RecordingStore,
+        allowance: DailyAllowance,
+        *,
+        max_file_bytes: int,
+        on_bytes: Callable[[int], None],
+        listing_s: float,
+    ) -> None:
+        """listing_s: how long the relay takes for a listing."""
+        self._client = client
+        self._store = store
+        self._allowance = allowance
+        self._max_file_bytes = max_file_bytes
+        self._on_bytes = on_bytes
+        self._lasts_s = max(BATCH_S, LISTINGS_A_BATCH * listing_s)
+        self._places = ExitStack()
+        self._fetched: list[tuple[RecordState, Incoming]] = []
+        self._began_s = 0.0
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.clear()
+
+    @property
+    def fetched(self) -> tuple[tuple[RecordState, Incoming], ...]:
+        """Return the records, and where their files are."""
+        return tuple(self._fetched)
+
+    def is_due(self) -> bool:
+        """Return whether records wait that should be kept before more is fetched."""
+        return bool(self._fetched) and time.monotonic() >= self._began_s + self._lasts_s
+
+    def clear(self) -> None:
+        """Forget the records; remove the files of those that were not kept."""
+        self._fetched.clear()
+        self._places.close()
+
+    def fetch(self, state: RecordState) -> None:
+        """Fetch the files of one record. Raises what `pull` raises."""
+        if not self._fetched:
+            self._began_s = time.monotonic()
+        incoming = self._places.enter_context(self._store.incoming())
+        pull(
+            self._client,
+            state.record,
+            incoming,
+            max_file_bytes=self._max_file_bytes,
+            on_bytes=self._received,
+        )
+        for file in state.record.files:
+            self._allowance.charge(beyond_its_end(file.size), time.time_ns())
+        self._fetched.append((state, incoming))
+
+    def check(self, record: ListedRecord, incoming: Incoming, listed: Mapping[str, ListedFile]) -> None:
+        """Check that the relay still has the files that were fetched, by those it lists now, by their names.
+
+        A file without a time looks the same when it is replaced. The configuration is then fetched once more:
+        it tells when the record began, so that of another record it differs.
+
+        Raises RecordReplacedError, MmsError.
+        """
+        for file in record.files:
+            now = listed.get(file.remote_name)
+            if now != file:
+                found = "none" if now is None else f"one of {now.size} bytes and another time"
+                raise RecordReplacedError(
+                    f"{file.local_name}: expected the file of {file.size} bytes that was listed before, "
+                    f"found {found} after it was fetched: the relay has replaced the record"
+                )
+        if len(record.files) > 1 and not all(file.modified_ns for file in record.files):
+            self._compare_configuration(record, incoming)
+
+    def _compare_configuration(self, record: ListedRecord, incoming: Incoming) -> None:
+        configuration = next(file for file in record.files if file.local_name.upper().endswith(".CFG"))
+        again = _Digest(self._received)
+        self._client.download(configuration.remote_name, again, expected_size=configuration.size)
+        if again.sha256.hexdigest() != incoming.sha256(configuration.local_name):
+            raise RecordReplacedError(
+                f"{configuration.local_name}: expected the content that came before the samples, found "
+                "another after them: the relay has replaced the record"
+            )
+
+    def _received(self, number_of_bytes: int) -> None:
+        self._on_bytes(number_of_bytes)
+        self._allowance.charge(number_of_bytes, time.time_ns())
+
+
+class _Digest:
+    """Takes a file's bytes and keeps their digest alone."""
+
+    def __init__(self, on_bytes: Callable[[int], None]) -> None:
+        self.sha256 = sha256()
+        self._on_bytes = on_bytes
+
+    def write(self, chunk: bytes, /) -> None:
+        self.sha256.update(chunk)
+        self._on_bytes(len(chunk))
