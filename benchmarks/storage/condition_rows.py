@@ -55,7 +55,7 @@ _START_COLUMNS = (
 _ROTOR_COLUMNS = (
     "recording_id", "motor", "time_ns", "state", "lower_sideband_dB", "upper_sideband_dB", "severity_dB",
     "severity_dB_ci95_low", "severity_dB_ci95_high", "detection_limit_dB", "slip", "load_level", "load_bin",
-    "duration_s", "load_oscillation_dB", "reasons",
+    "duration_s", "load_oscillation_dB", "reasons", "condition",
 )  # fmt: skip
 _SUPPLY_COLUMNS = (
     "recording_id", "motor", "time_ns", "frequency_hz", "line_voltages_V", "voltage_unbalance_iec",
@@ -141,7 +141,7 @@ def _rotor_findings(amounts: Amounts) -> Iterator[Row]:
         yield (
             id_of(RECORDING, number), motor, time_ns, "healthy", severity_dB - 4.0, severity_dB - 7.0,
             severity_dB, severity_dB - 5.0, severity_dB + 3.0, -52.0, 0.031, 0.48, number % 12, 10.0, -60.0,
-            REASONS,
+            REASONS, "healthy",
         )  # fmt: skip
 
 

@@ -53,6 +53,9 @@ PARTIAL = {
     "ix_alarms_open_site_urgency": "state",
     "ix_alarms_open_ied_urgency": "state",
     "ix_alarms_open_motor_urgency": "state",
+    "ix_rotor_course_time_ns": "condition",
+    "ix_rotor_course_load_bin": "condition",
+    "ix_rotor_course_condition": "condition",
 }
 """Indexes that have just the rows of one filter, and the column that it is about."""
 

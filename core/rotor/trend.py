@@ -3,14 +3,17 @@
 Cages differ as they are made, and a severity depends a little on the load, so each tenth of the rated load
 has a baseline of its own. A record that cannot tell takes nothing away; a single one that stands out is not
 believed.
+
+What follows from a record depends on two records before it and on its baseline, and on nothing else. So
+whoever keeps the records of years judges a new one from a few of them.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from statistics import median
 from typing import NamedTuple
 
-from core.rotor.finding import LOAD_BINS, LOAD_OSCILLATION, RotorFinding, RotorState
+from core.rotor.finding import LOAD_OSCILLATION, RotorState
 
 BASELINE_RECORDS = 3
 """First records of a load bin, whose median is its baseline."""
@@ -41,19 +44,38 @@ class LoadBin(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class DatedFinding:
-    """What a record of some time tells of the rotor.
+class JudgedRecord:
+    """A record that could tell, beside the baseline of its load.
 
     Parameters
     ----------
-    time_ns : int
-        Time of the record, in nanoseconds since 1970, UTC.
-    finding : RotorFinding
-        What it tells.
+    state : RotorState
+        What the record by itself says; not unsupported.
+    severity_dB : float
+        Asymmetry of the rotor's resistance [dB].
+    severity_dB_ci95 : tuple of float
+        Its 95 % interval.
+    baseline_dB : float or None
+        Baseline of its load bin [dB]; None of the records that make it.
+    load_swings : bool
+        Whether a swing of the load was taken off.
     """
 
-    time_ns: int
-    finding: RotorFinding
+    state: RotorState
+    severity_dB: float
+    severity_dB_ci95: tuple[float, float]
+    baseline_dB: float | None
+    load_swings: bool
+
+    @property
+    def change_dB(self) -> float | None:
+        """Change against the baseline [dB]; None without one."""
+        return None if self.baseline_dB is None else max(self.severity_dB, LEAST_DB) - self.baseline_dB
+
+    @property
+    def has_risen(self) -> bool:
+        """Whether the change is one that is told."""
+        return self.change_dB is not None and self.change_dB >= RISE_DB
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,81 +128,39 @@ class RotorCondition:
         }
 
 
-def rotor_condition(findings: Sequence[DatedFinding]) -> RotorCondition:
-    """Judge the rotor of one motor from all its records.
+def baseline_dB(first: Sequence[float]) -> float | None:
+    """Return the baseline of a load bin.
 
     Parameters
     ----------
-    findings : sequence of DatedFinding
-        What its records tell, in order of time.
+    first : sequence of float
+        Severities of its records that could tell, the first ones first [dB].
 
     Returns
     -------
-    RotorCondition
-        The condition.
+    float or None
+        Median of the first BASELINE_RECORDS; None while there are fewer.
     """
-    seen = list(_with_changes(findings))
-    if not seen:
-        reason = "no record could tell: see the reasons of each"
-        return RotorCondition(RotorState.UNSUPPORTED, None, None, None, None, (), (reason,))
-    states = [_state(_latest(seen, end)) for end in range(1, len(seen) + 1)]
-    first = next((k for k in range(len(states) - 1, 0, -1) if states[k - 1] is not states[k]), 0)
-    latest = _latest(seen, len(seen))
-    changes = [one.change_dB for one in latest if one.change_dB is not None]
-    return RotorCondition(
-        state=states[-1],
-        severity_dB=median(one.severity_dB for one in latest),
-        severity_dB_ci95=(
-            median(one.interval[0] for one in latest),
-            median(one.interval[1] for one in latest),
-        ),
-        change_dB=median(changes) if changes else None,
-        since_ns=seen[first].time_ns,
-        bins=_bins(seen),
-        reasons=_reasons(states[-1], latest),
-    )
+    if len(first) < BASELINE_RECORDS:
+        return None
+    return median(max(severity, LEAST_DB) for severity in first[:BASELINE_RECORDS])
 
 
-@dataclass(frozen=True, slots=True)
-class _Seen:
-    """One record that could tell, with its change against the baseline of its load bin."""
+def state_after(latest: Sequence[JudgedRecord]) -> RotorState:
+    """Return the state of a rotor from a record on.
 
-    time_ns: int
-    state: RotorState
-    severity_dB: float
-    interval: tuple[float, float]
-    bin: int
-    change_dB: float | None
-    load_swings: bool
+    Parameters
+    ----------
+    latest : sequence of JudgedRecord
+        The record and those before it, LATEST_RECORDS together or as many as there are; the latest last.
 
-    @property
-    def has_risen(self) -> bool:
-        return self.change_dB is not None and self.change_dB >= RISE_DB
-
-
-def _with_changes(findings: Sequence[DatedFinding]) -> Iterator[_Seen]:
-    first: list[list[float]] = [[] for _ in range(LOAD_BINS)]
-    for dated in findings:
-        found = dated.finding
-        interval, load_bin = found.severity_dB_ci95, found.load_bin
-        if found.severity_dB is None or interval is None or load_bin is None:
-            continue
-        if found.state is RotorState.UNSUPPORTED:
-            continue
-        level = max(found.severity_dB, LEAST_DB)
-        baseline = first[load_bin]
-        change = level - median(baseline) if len(baseline) == BASELINE_RECORDS else None
-        if len(baseline) < BASELINE_RECORDS:
-            baseline.append(level)
-        swings = any(reason.startswith(LOAD_OSCILLATION) for reason in found.reasons)
-        yield _Seen(dated.time_ns, found.state, found.severity_dB, interval, load_bin, change, swings)
-
-
-def _latest(seen: list[_Seen], end: int) -> list[_Seen]:
-    return seen[max(0, end - LATEST_RECORDS) : end]
-
-
-def _state(latest: list[_Seen]) -> RotorState:
+    Returns
+    -------
+    RotorState
+        The state; unsupported without any.
+    """
+    if not latest:
+        return RotorState.UNSUPPORTED
     faults = sum(one.state is RotorState.FAULT for one in latest)
     notable = sum(one.state is not RotorState.HEALTHY or one.has_risen for one in latest)
     if faults >= AGREEING:
@@ -188,16 +168,43 @@ def _state(latest: list[_Seen]) -> RotorState:
     return RotorState.WATCH if notable >= AGREEING or faults else RotorState.HEALTHY
 
 
-def _bins(seen: list[_Seen]) -> tuple[LoadBin, ...]:
-    by_bin = [[max(one.severity_dB, LEAST_DB) for one in seen if one.bin == k] for k in range(LOAD_BINS)]
-    return tuple(
-        LoadBin(k, len(own), median(own[:BASELINE_RECORDS]) if len(own) >= BASELINE_RECORDS else None)
-        for k, own in enumerate(by_bin)
-        if own
+def rotor_condition(
+    latest: Sequence[JudgedRecord], since_ns: int | None, bins: Sequence[LoadBin]
+) -> RotorCondition:
+    """Judge the rotor of one motor.
+
+    Parameters
+    ----------
+    latest : sequence of JudgedRecord
+        The latest LATEST_RECORDS that could tell, or as many as there are; the latest last.
+    since_ns : int or None
+        Time of the record from which on `state_after` has been what it is after the latest one.
+    bins : sequence of LoadBin
+        The load bins that have records.
+
+    Returns
+    -------
+    RotorCondition
+        The condition.
+    """
+    if not latest:
+        reason = "no record could tell: see the reasons of each"
+        return RotorCondition(RotorState.UNSUPPORTED, None, None, None, None, (), (reason,))
+    state = state_after(latest)
+    changes = [one.change_dB for one in latest if one.change_dB is not None]
+    low, high = zip(*(one.severity_dB_ci95 for one in latest), strict=True)
+    return RotorCondition(
+        state=state,
+        severity_dB=median(one.severity_dB for one in latest),
+        severity_dB_ci95=(median(low), median(high)),
+        change_dB=median(changes) if changes else None,
+        since_ns=since_ns,
+        bins=tuple(bins),
+        reasons=_reasons(state, latest),
     )
 
 
-def _reasons(state: RotorState, latest: list[_Seen]) -> tuple[str, ...]:
+def _reasons(state: RotorState, latest: Sequence[JudgedRecord]) -> tuple[str, ...]:
     count = len(latest)
     faults = sum(one.state is RotorState.FAULT for one in latest)
     watched = sum(one.state is RotorState.WATCH for one in latest)

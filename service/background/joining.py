@@ -2,7 +2,7 @@
 
 The recordings of the series stay as they are, whatever becomes of the joined one. That is a recording of its
 own: it is stored, diagnosed, listed and deleted as others are. The motor's condition does not follow from it,
-because it follows from its parts already; what the rotor shows is told by both.
+because it follows from its parts already. Of the rotor it tells in their place, for it is longer.
 """
 
 from collections.abc import Mapping

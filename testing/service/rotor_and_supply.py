@@ -1,5 +1,6 @@
 """What recordings show beside their diagnosis, for tests without a worker."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from core.classification.classification import Classification
@@ -8,6 +9,7 @@ from core.rotor.finding import RotorFinding, RotorState
 from core.supply.figures import SupplyFigures
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
+from service.storage.records import Series
 from testing.service.job_runner import RUNNER
 from testing.service.plants import NOW_NS, SECOND_NS, healthy
 
@@ -87,16 +89,46 @@ class ExaminedRecordings:
         diagnosis: Diagnosis | None = None,
         left_out: str | None = None,
         classification: Classification | None = None,
+        at_ns: int | None = None,
     ) -> str:
-        """Add a recording with what it shows; return its id."""
+        """Add a recording with what it shows; return its id. at_ns: of that time, not of the next second."""
         self._number += 1
-        now_ns = NOW_NS + self._number * SECOND_NS
+        now_ns = NOW_NS + self._number * SECOND_NS if at_ns is None else at_ns
         stored = self._store.store({f"R{self._number}.CFF": f"{motor} {self._number}".encode()})
         added = self.repository.add_recording(stored, motor=motor, now_ns=now_ns)
         self.diagnose(
             rotor, supply, now_ns, diagnosis=diagnosis, left_out=left_out, classification=classification
         )
         return added.recording.id
+
+    def join(self, parts: Sequence[str], rotor: RotorFinding, *, motor: str = "PUMP-A1") -> str:
+        """Join recordings to one of the time of the first, with what it shows; return its id."""
+        series = self._series(parts, motor)
+        stored = self._store.store({"JOINED.CFF": " ".join(parts).encode()})
+        joined = self.repository.add_joined(
+            stored, series, tuple(range(len(parts))), None, now_ns=series.recorded_ns[0]
+        )
+        self.diagnose(rotor, None, series.recorded_ns[0])
+        return joined
+
+    def diagnose_again(self, recording: str, rotor: RotorFinding, *, at_ns: int | None = None) -> None:
+        """Have a recording show something else."""
+        recorded_ns = self.repository.recording(recording).recorded_ns if at_ns is None else at_ns
+        assert recorded_ns is not None
+        self.repository.request_diagnosis(recording, now_ns=recorded_ns)
+        self.diagnose(rotor, None, recorded_ns)
+
+    def _series(self, parts: Sequence[str], motor: str) -> Series:
+        rows = [self.repository.recording(part) for part in parts]
+        request = self.repository.request_recording(motor, now_ns=NOW_NS)
+        return Series(
+            request.id,
+            motor,
+            tuple(parts),
+            tuple(row.digest or "" for row in rows),
+            tuple(row.recorded_ns or 0 for row in rows),
+            is_complete=True,
+        )
 
     def diagnose(
         self,

@@ -20,6 +20,7 @@ class RecordingRow(Base):
     operation_remark: why the parameters of a motor cannot be estimated from this start; null where they can.
     duration_s, pre_trigger_s: its length, and how much of it is before the trigger; null before it was read.
     parts: ids of the recordings that it was joined from; null of others.
+    joined_id: id of the recording that was joined from it and others; null where none was.
     """
 
     __tablename__ = "recordings"
@@ -47,6 +48,7 @@ class RecordingRow(Base):
     duration_s: Mapped[float | None] = mapped_column(Double)
     pre_trigger_s: Mapped[float | None] = mapped_column(Double)
     parts: Mapped[tuple[str, ...] | None]
+    joined_id: Mapped[str | None] = mapped_column(String(36))
 
     __table_args__ = (
         Index("ux_recordings_relay", "ied", "name", "digest", unique=True),

@@ -14,7 +14,8 @@ from service.storage.records import AlarmPlace, AlarmSpec
 from service.storage.repository.alarms.causes import clear, forget_cleared, locked_place, raised_at, supersede
 from service.storage.repository.alarms.changes import locked
 from service.storage.repository.alarms.suppression import suppress_by_design
-from service.storage.repository.history.rotor import latest_findings, rotor_condition_of
+from service.storage.repository.history.rotor import latest_findings
+from service.storage.repository.history.rotor_course import course_condition
 from service.storage.repository.sessions import Sessions, found
 from service.storage.states import AlarmState
 
@@ -29,7 +30,7 @@ class RotorAlarmRows(Sessions):
             place = locked_place(session, AlarmPlace(motor=motor))
             in_service = found(session, MotorRow, motor, "motor").in_service
             rows = locked(session, AlarmRow.motor == motor, is_open(), AlarmRow.kind.in_(OF_ROTOR))
-            condition = rotor_condition_of(session, motor)
+            condition = course_condition(session, motor)
             if in_service and condition.state in KINDS:
                 _tell(session, place, rows, condition, now_ns)
                 return

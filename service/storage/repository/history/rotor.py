@@ -3,13 +3,19 @@
 from dataclasses import fields
 from typing import Any, Final
 
-from sqlalchemy import Select, delete, select
+from sqlalchemy import Select, select
 from sqlalchemy.orm import Session
 
-from core.rotor.finding import RotorFinding
-from core.rotor.trend import DatedFinding, RotorCondition, rotor_condition
-from service.storage.models import MotorRow, RotorFindingRow
+from core.rotor.finding import RotorFinding, RotorState
+from core.rotor.trend import RotorCondition
+from service.storage.models import MotorRow, RecordingRow, RotorFindingRow
 from service.storage.records import Cursor, Page, RotorEntry
+from service.storage.repository.history.rotor_course import (
+    TOLD_STATES,
+    Place,
+    course_condition,
+    judged_again,
+)
 from service.storage.repository.sessions import Order, Sessions, found, latest_of, page_of, within
 from service.storage.texts import storable
 
@@ -23,16 +29,13 @@ _COLUMNS: Final = [
 ]
 _ORDER: Final[Order] = (RotorFindingRow.time_ns, RotorFindingRow.recording_id)
 
-MOST_OF_EACH_END: Final = 500
-"""So many of a motor's first findings, which its baselines follow from, and of its latest ones are judged."""
-
 
 class RotorRows(Sessions):
     def rotor_condition(self, motor: str) -> RotorCondition:
         """Return what a motor's recordings say of its rotor together. Raises NotFoundError."""
         with self._read() as session:
             found(session, MotorRow, motor, "motor")
-            return rotor_condition_of(session, motor)
+            return course_condition(session, motor)
 
     def rotor_trend(
         self,
@@ -64,32 +67,77 @@ def latest_findings(session: Session, motor: str, limit: int) -> tuple[RotorEntr
     return latest_of(session, _of_motor(motor), _ORDER, _entry, limit=limit)
 
 
-def rotor_condition_of(session: Session, motor: str) -> RotorCondition:
-    """Return what a motor's recordings say of its rotor together: the first ones, and the latest ones."""
-    first = _of_motor(motor).order_by(*_ORDER).limit(MOST_OF_EACH_END)
-    entries = {row.recording_id: _entry(*row) for row in session.execute(first)}
-    if len(entries) == MOST_OF_EACH_END:
-        entries |= {one.recording_id: one for one in latest_findings(session, motor, MOST_OF_EACH_END)}
-    return rotor_condition([DatedFinding(one.time_ns, one.finding) for one in entries.values()])
-
-
 def keep_rotor_finding(
     session: Session, recording_id: str, motor: str, time_ns: int, finding: RotorFinding | None
 ) -> None:
     """Keep what a recording shows of the rotor, in place of what an earlier diagnosis found."""
-    forget_rotor_finding(session, recording_id)
-    if finding is None:
-        return
-    values = {name: getattr(finding, name) for name in _FIGURES}
-    values |= dict(zip(_ENDS, finding.severity_dB_ci95 or (None, None), strict=True))
-    values["reasons"] = tuple(map(storable, finding.reasons))
-    session.add(RotorFindingRow(recording_id=recording_id, motor=motor, time_ns=time_ns, **values))
-    session.flush()
+    with judged_again(session, motor) as places:
+        places += _taken_out(session, recording_id)
+        if finding is not None:
+            places += _put_in(session, recording_id, motor, time_ns, finding)
 
 
 def forget_rotor_finding(session: Session, recording_id: str) -> None:
     """Delete what a recording showed of the rotor."""
-    session.execute(delete(RotorFindingRow).where(RotorFindingRow.recording_id == recording_id))
+    row = session.get(RotorFindingRow, recording_id)
+    if row is not None:
+        with judged_again(session, row.motor) as places:
+            places += _taken_out(session, recording_id)
+
+
+def _put_in(
+    session: Session, recording_id: str, motor: str, time_ns: int, finding: RotorFinding
+) -> list[Place]:
+    """Add a finding; return where what counts has changed.
+
+    A joined recording that tells stands for its parts.
+    """
+    values = {name: getattr(finding, name) for name in _FIGURES}
+    values |= dict(zip(_ENDS, finding.severity_dB_ci95 or (None, None), strict=True))
+    values["reasons"] = tuple(map(storable, finding.reasons))
+    row = RotorFindingRow(recording_id=recording_id, motor=motor, time_ns=time_ns, **values)
+    recording = session.get(RecordingRow, recording_id)
+    joined_id = None if recording is None else recording.joined_id
+    joined = None if joined_id is None else session.get(RotorFindingRow, joined_id)
+    row.condition = None if joined is not None and _tells(joined) else _first_condition(row)
+    session.add(row)
+    changed = [row]
+    if _tells(row):
+        for part in _parts(session, recording_id):
+            part.condition = None
+            changed.append(part)
+    return [Place(one.time_ns, one.recording_id) for one in changed]
+
+
+def _taken_out(session: Session, recording_id: str) -> list[Place]:
+    """Delete a finding; return where what counts has changed. The parts of a joined recording count again."""
+    row = session.get(RotorFindingRow, recording_id)
+    if row is None:
+        return []
+    changed = [row]
+    for part in _parts(session, recording_id):
+        part.condition = _first_condition(part)
+        changed.append(part)
+    session.delete(row)
+    session.flush()
+    return [Place(one.time_ns, one.recording_id) for one in changed]
+
+
+def _parts(session: Session, recording_id: str) -> list[RotorFindingRow]:
+    """Return what the recordings show that a recording was joined from."""
+    recording = session.get(RecordingRow, recording_id)
+    parts = () if recording is None else recording.parts or ()
+    found_parts = (session.get(RotorFindingRow, part) for part in parts)
+    return [part for part in found_parts if part is not None]
+
+
+def _tells(row: RotorFindingRow) -> bool:
+    return row.state in TOLD_STATES
+
+
+def _first_condition(row: RotorFindingRow) -> RotorState | None:
+    """Return a condition for a finding that counts from now on, until it is judged beside its neighbours."""
+    return row.state if _tells(row) else None
 
 
 def _of_motor(motor: str) -> Select[*tuple[Any, ...]]:

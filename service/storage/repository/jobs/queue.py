@@ -32,6 +32,7 @@ from service.storage.repository.conditions.observations import keep_observation
 from service.storage.repository.history.rotor import keep_rotor_finding
 from service.storage.repository.history.starts import keep_start
 from service.storage.repository.history.supply import keep_supply
+from service.storage.repository.jobs.locks import lock_motor_of
 from service.storage.repository.recordings.baselines import baseline_rows
 from service.storage.repository.recordings.recordings import new_job, require_room
 from service.storage.repository.recordings.requests import diagnose_rows, fail_rows
@@ -171,6 +172,7 @@ class JobRows(Sessions):
         Raises NotFoundError, UnstorableDiagnosisError.
         """
         with self._write() as session:
+            lock_motor_of(session, job_id)
             row = found(session, JobRow, job_id, "job", lock=True)
             if row.state is JobState.DONE:
                 return row.runner == runner

@@ -1,6 +1,6 @@
 """Series of recordings that were asked for as one, and the recordings joined from them."""
 
-from sqlalchemy import select
+from sqlalchemy import select, update
 from sqlalchemy.orm import Session
 
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
@@ -58,6 +58,9 @@ class SeriesRows(Sessions):
                 require_folder(session, stored)
                 row = brought(session, series.motor, stored.name, RecordingSource.JOINED, now_ns)
                 row.parts = tuple(series.recording_ids[part] for part in parts)
+                session.execute(
+                    update(RecordingRow).where(RecordingRow.id.in_(row.parts)).values(joined_id=row.id)
+                )
                 fill(session, row, stored, now_ns)
                 session.add(new_job(row, DEFAULT_METHOD, DEFAULT_MODEL, JobPriority.UPLOAD, now_ns))
             else:
