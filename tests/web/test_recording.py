@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Browser, Page, Route, expect
 
 from service.storage.records import Role
 from service.storage.repository import Repository
@@ -111,6 +111,26 @@ def test_arrows_move_the_cursor_of_all_charts_and_the_phasors(quiet: tuple[Site,
     press(page.page, "voltages", "Home")
     assert instant(readout(page.page, "voltages")) == 0.0
     assert "50P1 0" in readout(page.page, "states")
+
+
+def test_the_phasors_are_those_of_the_cursor_also_where_an_answer_comes_late(
+    quiet: tuple[Site, list[str]],
+) -> None:
+    site, ids = quiet
+    page = site.open(Role.VIEWER)
+    page.goto(f"/recordings/{ids[1]}")
+    asked: list[Route] = []
+    page.page.route("**/phasors?*", lambda route: asked.append(route), times=1)
+    with page.page.expect_request("**/phasors?*"):
+        press(page.page, "voltages", "ArrowRight")
+    looked_at = page.page.locator("[data-cursor-time]")
+    first = looked_at.input_value()
+    press(page.page, "voltages", "Shift+ArrowRight")
+    expect(looked_at).not_to_have_value(first)
+    asked[0].continue_()
+    told = page.page.locator(".phasor-figures strong")
+    second = float(looked_at.input_value())
+    wait_until(lambda: abs(float(told.inner_text().removesuffix(" s")) - second) < 0.001)
 
 
 def test_two_markers_tell_what_differs_between_them(quiet: tuple[Site, list[str]]) -> None:

@@ -109,8 +109,9 @@ async function showModel(signal) {
 const showPhasors = later((/** @type {number} */ at) => {
   const field = /** @type {HTMLInputElement | null} */ (document.querySelector("[data-cursor-time]"));
   if (field) field.value = at.toFixed(4);
+  // The target itself stays: a request that waits for the one before it has found its target already.
   // @ts-expect-error htmx is a script of its own
-  window.htmx.ajax("GET", `${location.pathname}/phasors?at_s=${at}`, { target: "#phasors", swap: "outerHTML" });
+  window.htmx.ajax("GET", `${location.pathname}/phasors?at_s=${at}`, { target: "#phasors", swap: "innerHTML" });
 });
 
 /** @param {number} number */

@@ -228,7 +228,7 @@ def test_files_that_cannot_be_read_are_told_and_still_downloaded(
     assert any("The samples cannot be shown" in told for told in words(document, ".message.bad"))
     assert addresses(document, "a[download]") == [f"/api/v1/recordings/{added.id}/file"]
     part = page(looking.get(f"/recordings/{added.id}/phasors"))
-    assert "There are no phasors here" in words(part, ".phasors p")[0]
+    assert "There are no phasors here" in words(part, "p")[0]
     assert looking.get(f"/recordings/{MISSING}").status_code == 404
 
 
