@@ -10,6 +10,8 @@ from core.units import NANOSECONDS_PER_MILLISECOND, NANOSECONDS_PER_SECOND
 _DATE = re.compile(r"(\d{1,4})[/-](\d{1,2})[/-](\d{1,4})", re.ASCII)
 _TIME = re.compile(r"(\d{1,2}):(\d\d):(\d\d)(?:\.(\d{1,6}))?", re.ASCII)
 _CENTURY = 2000
+_YEARS = range(1970, 2200)
+"""No relay kept a report before; later ones are no times in nanoseconds."""
 
 
 class DateOrder(StrEnum):
@@ -90,6 +92,9 @@ def time_of_fields(line: Line, fields: dict[str, str]) -> int:
 
 
 def _time(line: Line, date: tuple[int, int, int], clock: tuple[int, int, int]) -> int:
+    if date[0] not in _YEARS:
+        expected = f"a year from {_YEARS.start} to {_YEARS.stop - 1}"
+        raise line.error("time", expected=expected, found=str(date[0]))
     try:
         moment = datetime(*date, *clock, tzinfo=UTC)
     except ValueError as error:

@@ -1,48 +1,75 @@
-"""Which report of a relay a text is, where it is not the one that was expected."""
+"""Which report of a relay a text is, by its own labels: the right reader then says what is wrong in it."""
 
-from collections.abc import Callable
+import re
+from enum import StrEnum
+from typing import Final
 
-from core.relay_reports.clock_times import DateOrder
 from core.relay_reports.error import ReportError
-from core.relay_reports.load_profile import read_load_profile
-from core.relay_reports.motor_statistics import read_motor_statistics
-from core.relay_reports.sequence_of_events import read_sequence_of_events
+from core.relay_reports.report_text import Line, report_text
+from core.relay_reports.tables import fields_of, label_of
 
-_OTHERS: tuple[tuple[str, Callable[[bytes, DateOrder], object]], ...] = (
-    (
-        "a sequence of events (SER), which core.relay_reports.read_sequence_of_events reads",
-        lambda text, order: read_sequence_of_events(text, date_order=order),
-    ),
-    (
-        "motor statistics (MOT), which core.relay_reports.read_motor_statistics reads",
-        lambda text, order: read_motor_statistics(text, date_order=order),
-    ),
-    (
-        "a load profile (LDP), which core.relay_reports.read_load_profile reads",
-        lambda text, order: read_load_profile(text, date_order=order),
-    ),
+
+class ReportKind(StrEnum):
+    """Kinds of reports, by the commands that a relay shows them for."""
+
+    MOTOR_STARTS = "MSR"
+    LOAD_PROFILE = "LDP"
+    MOTOR_STATISTICS = "MOT"
+    SEQUENCE_OF_EVENTS = "SER"
+
+
+_ENTRIES: Final = (
+    (re.compile(r"date of (motor )?start\b", re.IGNORECASE), ReportKind.MOTOR_STARTS),
+    (re.compile(r"(running time|number of starts)(\s{2}|\s*:)", re.IGNORECASE), ReportKind.MOTOR_STATISTICS),
 )
+_TITLES: Final = (
+    (re.compile(r"\bmotor start\b", re.IGNORECASE), ReportKind.MOTOR_STARTS),
+    (re.compile(r"\bload profile\b", re.IGNORECASE), ReportKind.LOAD_PROFILE),
+    (re.compile(r"\b(sequential events|sequence of events)\b", re.IGNORECASE), ReportKind.SEQUENCE_OF_EVENTS),
+    (re.compile(r"\bmotor (operating )?statistics\b", re.IGNORECASE), ReportKind.MOTOR_STATISTICS),
+)
+_DATED: Final = ({"DATE", "TIME"}, {"MONTH", "DAY", "YEAR"})
+_CHANGES: Final = {"ELEMENT", "STATE"}
 
 
-def other_report(text: bytes, *, date_order: DateOrder = DateOrder.MDY) -> str | None:
-    """Return what a text is that is no motor start report.
+def kind_of_report(report: bytes | str, *, name: str = "report") -> ReportKind:
+    """Return which report a text is: by its entries or headings, or by its title where it has no data.
 
     Parameters
     ----------
-    text : bytes
+    report : bytes or str
         The text.
-    date_order : DateOrder
-        Order of dates.
+    name : str
+        What errors call it.
 
     Returns
     -------
-    str or None
-        Which report it is and what reads it, in words; None where no reader takes it.
+    ReportKind
+        The kind; that report may still have errors.
+
+    Raises
+    ------
+    ReportError
+        If it is none of them.
     """
-    for words, reader in _OTHERS:
-        try:
-            reader(text, date_order)
-        except ReportError:
-            continue
-        return words
-    return None
+    lines = report_text(report, name).lines()
+    for line in lines:
+        kind = _kind_of_line(line)
+        if kind is not None:
+            return kind
+    for line in lines:
+        for title, kind in _TITLES:
+            if title.search(line.text):
+                return kind
+    expected = "a report of motor starts (MSR), load (LDP), statistics (MOT) or events (SER)"
+    raise ReportError(name, "end", expected=expected, found="none")
+
+
+def _kind_of_line(line: Line) -> ReportKind | None:
+    for entry, kind in _ENTRIES:
+        if entry.match(line.text):
+            return kind
+    labels = {label_of(field) for field in fields_of(line)}
+    if not any(dated <= labels for dated in _DATED):
+        return None
+    return ReportKind.SEQUENCE_OF_EVENTS if labels >= _CHANGES else ReportKind.LOAD_PROFILE

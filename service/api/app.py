@@ -34,11 +34,11 @@ from service.api.notifications import routes as notifications
 from service.api.query_parameters import refuse_unknown_parameters
 from service.api.recordings import deletions, diagnoses, event_reports
 from service.api.recordings import routes as recordings
+from service.api.relay_reports import routes as relay_reports
 from service.api.relays import routes as relays
 from service.api.reports import routes as reports
 from service.api.rotor_and_supply import routes as rotor_and_supply
 from service.api.samples import routes as samples
-from service.api.starts import reports as start_reports
 from service.api.starts import routes as starts
 from service.api.tracking import routes as tracking
 from service.configuration.access import OidcSettings
@@ -77,7 +77,7 @@ def create_app(
         load,
         baselines,
         starts,
-        start_reports,
+        relay_reports,
         measurements,
         relays,
         alarm_lists,
@@ -108,7 +108,7 @@ def create_app(
     max_upload_bytes = settings.max_upload_bytes
     arrivals = Arrivals(grace_s=settings.transfer_timeout_s, least_rate=settings.min_upload_rate)
     uploads = frozenset((method, PREFIX + path) for method, path in recordings.UPLOAD_ROUTES)
-    texts = frozenset((method, PREFIX + path) for method, path in start_reports.REPORT_ROUTES)
+    texts = frozenset((method, PREFIX + path) for method, path in relay_reports.REPORT_ROUTES)
     app.add_middleware(LongLists)
     app.add_middleware(
         BodyLimits,

@@ -9,7 +9,7 @@ class AuditAction(StrEnum):
 
     RECORDING_REQUESTED = "recording-requested"
     RECORDING_UPLOADED = "recording-uploaded"
-    STARTS_IMPORTED = "starts-imported"
+    REPORT_IMPORTED = "report-imported"
     RECORDING_DELETED = "recording-deleted"
     DIAGNOSIS_REQUESTED = "diagnosis-requested"
     BASELINE_SET = "baseline-set"
@@ -48,7 +48,7 @@ class AuditAction(StrEnum):
 MEANINGS: Mapping[AuditAction, str] = {
     AuditAction.RECORDING_REQUESTED: "Somebody had a motor recorded (`mcc trigger`).",
     AuditAction.RECORDING_UPLOADED: "Somebody gave the service a recording.",
-    AuditAction.STARTS_IMPORTED: "Somebody brought a motor start report; `after` counts its starts.",
+    AuditAction.REPORT_IMPORTED: "Somebody brought a relay's text report; `after` tells which, and counts.",
     AuditAction.RECORDING_DELETED: "Somebody deleted a recording; `before` is what it was.",
     AuditAction.DIAGNOSIS_REQUESTED: "Somebody had a recording diagnosed again.",
     AuditAction.BASELINE_SET: "Somebody chose the healthy recordings of a motor, in place of others.",

@@ -183,14 +183,14 @@ class ServiceClient:
         response = self._request("POST", f"{API}/recordings", {}, form={"motor": motor}, files=parts)
         return _document(response), response.status_code == HTTPStatus.CREATED
 
-    def import_starts(self, motor: str, report: bytes, *, date_order: str) -> Document:
-        """Have the starts of a relay's motor start report kept; return what became of them.
+    def import_report(self, motor: str, report: bytes, query: Mapping[str, str]) -> Document:
+        """Have what a text report of a motor's relay tells kept; return what became of it.
 
         Raises ServiceError.
         """
-        path = f"{API}/motors/{segment(motor)}/starts/reports"
+        path = f"{API}/motors/{segment(motor)}/reports"
         headers = {b"Content-Type": b"text/plain"}
-        return _document(self._request("POST", path, {"date_order": date_order}, headers, content=report))
+        return _document(self._request("POST", path, query, headers, content=report))
 
     def download(self, recording_id: str) -> tuple[str, bytes]:
         """Return the name and the content of a recording's archive. Raises ServiceError."""

@@ -35,6 +35,9 @@ TABLE: Table[MotorMeasurement] = Table(
         text("motor", "motor", attrgetter("motor")),
         time("time", "when it was measured, or the beginning of the means", attrgetter("measured.time_ns")),
         whole("samples", "1", "how many values the means are of", attrgetter("measured.samples")),
+        text(
+            "source", "polled by the service, or from the relay's load profile", attrgetter("measured.source")
+        ),
         *(_column(quantity) for quantity in MeteredQuantity),
     ),
 )

@@ -104,6 +104,16 @@ class StartSource(StrEnum):
     REPORT = "report"
 
 
+class MeasurementSource(StrEnum):
+    """Where a measured value comes from: polled by the service, or from the relay's load profile.
+
+    A mean of both is `polled`, which is the later one in the order of the words.
+    """
+
+    LOAD_PROFILE = "load-profile"
+    POLLED = "polled"
+
+
 class RecordingSource(StrEnum):
     """Where a recording came from."""
 

@@ -17,15 +17,20 @@ from service.api.times import From, Time, To
 from service.exports import measurements as table
 from service.plant import AveragingStep, MeteredQuantity
 from service.storage.records import Measurement as StoredMeasurement
+from service.storage.states import MeasurementSource
 
 router = APIRouter(tags=["condition"])
 
 
 class MeasurementTime(Document):
-    """When it was measured: at `time`, or `samples` times from then on."""
+    """When it was measured: at `time`, or `samples` times from then on.
+
+    source: the service polled it, or it is from the relay's load profile.
+    """
 
     time: Time = Field(validation_alias="time_ns")
     samples: int
+    source: MeasurementSource
 
 
 if TYPE_CHECKING:
@@ -72,4 +77,6 @@ def list_measurements(
 
 
 def _document(stored: StoredMeasurement) -> Measurement:
-    return Measurement.model_validate({"time_ns": stored.time_ns, "samples": stored.samples, **stored.values})
+    return Measurement.model_validate(
+        {"time_ns": stored.time_ns, "samples": stored.samples, "source": stored.source, **stored.values}
+    )

@@ -2,13 +2,10 @@
 
 from typing import Literal
 
-from pydantic import Field
-
 from core.rotor.finding import RotorState
 from core.starts.compared import ChangeState, StartCause
 from service.api.document import Document, Listed
 from service.api.times import Time
-from service.storage.records import ReportOutcome
 from service.storage.states import StartSource
 
 Interval = tuple[float, float]
@@ -146,25 +143,3 @@ class StartDetails(StartSummary):
     sideband: StartSidebandDetails | None
     stress: StartStressDetails | None
     remark: str | None
-
-
-class ImportedStart(Document):
-    """A start of a report: `added`, `joined` with the recording of the same start, or `known` already."""
-
-    id: str
-    time: Time = Field(validation_alias="time_ns")
-    outcome: ReportOutcome
-
-
-class LeftOutStart(Document):
-    """A start of a relay's report that cannot be kept, and why."""
-
-    time: Time
-    reason: str
-
-
-class StartImport(Document):
-    """What became of the starts of a relay's report."""
-
-    starts: Listed[ImportedStart]
-    left_out: Listed[LeftOutStart]

@@ -31,6 +31,7 @@ Reason = Annotated[str | None, typer.Option(metavar="TEXT", help="Why; it is kep
 By = Annotated[str | None, typer.Option(metavar="NAME", help="Who says so (default: who is logged in).")]
 Quantity = Literal["mu_f", "theta_f", "load_level", "condition_level", "change"]
 DateOrder = Literal["MDY", "YMD", "DMY"]
+PowerUnit = Literal["W", "kW"]
 State = Literal["announced", "fetched", "diagnosed", "rejected", "failed"]
 
 
@@ -63,24 +64,35 @@ def starts(
     motor: MotorName,
     url: Url = DEFAULT_URL,
     limit: Limit = 20,
-    report: Annotated[
-        Path | None,
-        typer.Option("--import", metavar="FILE", help="Take the starts of a relay's report (MSR)."),
-    ] = None,
-    date_order: Annotated[
-        DateOrder, typer.Option(help="Order of the report's dates: the relay's setting DATE_F.")
-    ] = "MDY",
     *,
     as_csv: Csv = False,
     as_json: Json = False,
 ) -> None:
     """Show the starts of a motor, oldest first, and why they are other than the first ones."""
-    from service.cli.recordings.starts import import_starts, show_starts
+    from service.cli.recordings.starts import show_starts
 
-    if report is not None:
-        import_starts(url, motor, report, date_order, as_json=as_json)
-        return
     show_starts(url, motor, limit=limit, as_csv=as_csv, as_json=as_json)
+
+
+@commands.command()
+def import_report(
+    motor: MotorName,
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="A report of its relay as text: MSR or LDP.")],
+    url: Url = DEFAULT_URL,
+    date_order: Annotated[
+        DateOrder, typer.Option(help="Order of the report's dates: the relay's setting DATE_F.")
+    ] = "MDY",
+    power_unit: Annotated[
+        PowerUnit | None,
+        typer.Option(help="Unit of P and Q in a load profile; without it they are left out."),
+    ] = None,
+    *,
+    as_json: Json = False,
+) -> None:
+    """Give the service a text report of a motor's relay: it keeps the starts or the load that it tells."""
+    from service.cli.relay_report import import_report as bring
+
+    bring(url, motor, file, date_order=date_order, power_unit=power_unit, as_json=as_json)
 
 
 @commands.command()

@@ -1,13 +1,8 @@
-"""`mcc starts`: the starts of a motor, why they have changed, and those of a relay's report brought in."""
+"""`mcc starts`: the starts of a motor, and why they have changed."""
 
-from collections.abc import Sequence
 from itertools import islice
-from pathlib import Path
 
-from rich.text import Text
-
-from core.error_words import one_line
-from service.cli.output import CommandError, failing_clearly, print_document, results
+from service.cli.output import failing_clearly
 from service.cli.rows import Column, print_rows, require_one_format
 from service.client.rest_client import Document, ServiceClient, ServiceError, segment
 from service.client.verdicts import percent, to_the_second
@@ -18,14 +13,6 @@ FIELDS = (
     "share_of_hot_limit", "starts_within_hour", "starts_allowed", "load_torque_Nm", "load_torque_Nm_ci95",
     "rotor_state", "comparison",
 )  # fmt: skip
-
-
-TOLD = {
-    "added": "a start that was not recorded",
-    "joined": "joined with the recording of the same start",
-    "known": "was there already",
-}
-"""What became of a start of a report."""
 
 
 def show_starts(url: str, motor: str, *, limit: int, as_csv: bool, as_json: bool) -> None:
@@ -46,31 +33,6 @@ def show_starts(url: str, motor: str, *, limit: int, as_csv: bool, as_json: bool
         "recording": lambda one: str(one["recording_id"] or "-"),
     }
     print_rows("starts", starts, FIELDS, columns, as_csv=as_csv, as_json=as_json, whole=("recording",))
-
-
-def import_starts(url: str, motor: str, file: Path, date_order: str, *, as_json: bool) -> None:
-    """Give a relay's motor start report to the service. Raises CommandError."""
-    if not file.is_file():
-        raise CommandError(f"{file}: expected a file", details={"type": "FileNotFound"})
-    with failing_clearly(ServiceError, OSError), ServiceClient(url) as service:
-        imported = service.import_starts(motor, file.read_bytes(), date_order=date_order)
-    if as_json:
-        print_document(imported)
-        return
-    lines = [f"{to_the_second(one['time'])}: {_outcome(one)}" for one in _listed(imported, "starts")]
-    left_out = _listed(imported, "left_out")
-    lines += [f"{to_the_second(one['time'])}: left out: {one['reason']}" for one in left_out]
-    for line in lines or [f"{file.name}: the relay has no start in its report"]:
-        results().print(Text(one_line(line)), soft_wrap=True)
-
-
-def _listed(document: Document, name: str) -> Sequence[Document]:
-    found = document[name]
-    return found if isinstance(found, list) else []
-
-
-def _outcome(start: Document) -> str:
-    return f"{TOLD[str(start['outcome'])]} ({start['id']})"
 
 
 def _figure(value: object) -> str:

@@ -5,6 +5,7 @@ from sqlalchemy.orm import Mapped, mapped_column
 
 from service.plant import MeteredQuantity
 from service.storage.models.base import Base
+from service.storage.states import MeasurementSource
 
 
 class MeasurementRow(Base):
@@ -19,6 +20,7 @@ class MeasurementRow(Base):
     step_s: Mapped[int] = mapped_column(primary_key=True)
     time_ns: Mapped[int] = mapped_column(primary_key=True)
     samples: Mapped[int]
+    source: Mapped[MeasurementSource] = mapped_column(server_default=MeasurementSource.POLLED)
 
     __table_args__ = (Index("ix_measurements_step_s_time_ns", "step_s", "time_ns"),)
 

@@ -49,7 +49,7 @@ from service.storage.records.diagnoses import (
 )
 from service.storage.records.fleet import CallingAlarms, FleetMotor
 from service.storage.records.health import MotorHealth, RecordedStarts
-from service.storage.records.measurements import Measurement, Sample
+from service.storage.records.measurements import ImportedLoad, Measurement, Sample
 from service.storage.records.notifications import (
     Gathering,
     NewNotification,
@@ -122,6 +122,7 @@ __all__ = [
     "GatewayEntry",
     "Gathering",
     "IedEntry",
+    "ImportedLoad",
     "ImportedStart",
     "Job",
     "JobResult",

@@ -3,6 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from service.storage.states import MeasurementSource
+
 
 @dataclass(frozen=True, slots=True)
 class Sample:
@@ -26,3 +28,17 @@ class Measurement:
     time_ns: int
     samples: int
     values: Mapping[str, float | None]
+    source: MeasurementSource = MeasurementSource.POLLED
+
+
+@dataclass(frozen=True, slots=True)
+class ImportedLoad:
+    """How many rows of a load profile became measured values.
+
+    known: in quarters of an hour that have measured values already.  not_over: in one that is not over, or
+    ahead of the time.
+    """
+
+    added: int
+    known: int
+    not_over: int

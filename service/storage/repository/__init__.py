@@ -26,6 +26,7 @@ from service.storage.repository.history.supply import SupplyRows
 from service.storage.repository.history.thinned_trend import ThinnedTrendRows
 from service.storage.repository.jobs.queue import JobRows
 from service.storage.repository.jobs.runners import JobRunnerRows
+from service.storage.repository.load_profiles import LoadProfileRows
 from service.storage.repository.measurements import MeasurementRows
 from service.storage.repository.motor_health import MotorHealthRows
 from service.storage.repository.motor_versions import MotorVersionRows
@@ -80,6 +81,7 @@ class Repository(
     TrackingRows,
     StateCounts,
     MeasurementRows,
+    LoadProfileRows,
     BaselineRows,
     DeletionRows,
     FolderRows,

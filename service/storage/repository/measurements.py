@@ -5,8 +5,8 @@ from itertools import pairwise
 from time import monotonic
 from typing import Any
 
-from sqlalchemy import ColumnElement, bindparam, case, delete, func, insert, literal, select
-from sqlalchemy.orm import Session
+from sqlalchemy import ColumnElement, bindparam, case, delete, exists, func, insert, literal, select
+from sqlalchemy.orm import Session, aliased
 
 from core.units import NANOSECONDS_PER_SECOND
 from service.plant import AveragingStep, MeteredQuantity
@@ -14,11 +14,22 @@ from service.storage.engine import one_at_a_time
 from service.storage.models import MeasurementRow, MotorRow
 from service.storage.records import Cursor, DeletedRows, Measurement, Page, Sample
 from service.storage.repository.sessions import Order, Sessions, found, page_of, within
+from service.storage.states import MeasurementSource
 
 LATENESS_NS = 120 * NANOSECONDS_PER_SECOND
 """A mean is made when its interval ended this long ago: samples may be on their way until then."""
 
+AVERAGING = "average measurements"
+"""What one transaction does at a time."""
+
 _COLUMNS = {quantity: MeasurementRow.__table__.c[quantity.value] for quantity in MeteredQuantity}
+
+_MEASURED = (
+    MeasurementRow.time_ns,
+    MeasurementRow.samples,
+    MeasurementRow.source,
+    *_COLUMNS.values(),
+)
 
 _NAMES = [quantity.value for quantity in MeteredQuantity]
 
@@ -36,27 +47,14 @@ class MeasurementRows(Sessions):
         if not latest:
             return
         with self._write() as session:
-            connection = session.connection()
-            connection.execute(_OF_A_TIME, [{"of": motor, "at": time_ns} for motor, time_ns in latest])
-            connection.execute(
-                insert(MeasurementRow),
-                [
-                    {
-                        "motor": sample.motor,
-                        "step_s": AveragingStep.AS_SAMPLED.value,
-                        "time_ns": sample.time_ns,
-                        "samples": 1,
-                        **dict.fromkeys(quantity.value for quantity in MeteredQuantity),
-                        **sample.values,
-                    }
-                    for sample in latest.values()
-                ],
-            )
+            at_times = [{"of": motor, "at": time_ns} for motor, time_ns in latest]
+            session.connection().execute(_OF_A_TIME, at_times)
+            insert_samples(session, latest.values(), MeasurementSource.POLLED)
 
     def latest_sample(self, motor: str, *, since_ns: int) -> Measurement | None:
         """Return what a motor's relay measured last, from a time on; None without anything."""
         query = (
-            select(MeasurementRow.time_ns, MeasurementRow.samples, *_COLUMNS.values())
+            select(*_MEASURED)
             .where(
                 MeasurementRow.motor == motor,
                 MeasurementRow.step_s == AveragingStep.AS_SAMPLED.value,
@@ -76,16 +74,8 @@ class MeasurementRows(Sessions):
         """
         for finer, step_s in pairwise(step.value for step in AveragingStep):
             with self._write() as session:
-                one_at_a_time(session.connection(), "average measurements")
-                step_ns = step_s * NANOSECONDS_PER_SECOND
-                to_ns = (now_ns - LATENESS_NS) // step_ns * step_ns
-                latest = session.scalar(
-                    select(func.max(MeasurementRow.time_ns)).where(
-                        MeasurementRow.step_s == step_s, MeasurementRow.time_ns < to_ns
-                    )
-                )
-                from_ns = 0 if latest is None else latest + step_ns
-                _average(session, finer, step_s, from_ns, to_ns)
+                one_at_a_time(session.connection(), AVERAGING)
+                average_until(session, finer, step_s, now_ns=now_ns)
 
     def forget_measurements(self, step_s: int, rows: int, *, before_ns: int) -> DeletedRows:
         """Delete the oldest measurements of one step from before a time.
@@ -122,8 +112,7 @@ class MeasurementRows(Sessions):
         after: Cursor | None = None,
     ) -> Page[Measurement]:
         """Return a motor's measurements, oldest first, from_ns <= time < to_ns. Raises NotFoundError."""
-        columns = (MeasurementRow.time_ns, MeasurementRow.samples, *_COLUMNS.values())
-        query = select(*columns).where(MeasurementRow.motor == motor, MeasurementRow.step_s == step_s)
+        query = select(*_MEASURED).where(MeasurementRow.motor == motor, MeasurementRow.step_s == step_s)
         query = query.where(*within(MeasurementRow.time_ns, from_ns, to_ns))
         order: Order = [MeasurementRow.time_ns]
         with self._read() as session:
@@ -131,8 +120,50 @@ class MeasurementRows(Sessions):
             return page_of(session, query, order, _measurement, limit=limit, after=after)
 
 
-def _average(session: Session, finer: int, step_s: int, from_ns: int, to_ns: int) -> None:
-    """Store the means of the rows of step `finer` in [from_ns, to_ns), weighted with their samples."""
+def insert_samples(session: Session, samples: Iterable[Sample], source: MeasurementSource) -> None:
+    """Write samples at times that have none."""
+    session.connection().execute(
+        insert(MeasurementRow),
+        [
+            {
+                "motor": sample.motor,
+                "step_s": AveragingStep.AS_SAMPLED.value,
+                "time_ns": sample.time_ns,
+                "samples": 1,
+                "source": source,
+                **dict.fromkeys(quantity.value for quantity in MeteredQuantity),
+                **sample.values,
+            }
+            for sample in samples
+        ],
+    )
+
+
+def end_of_averages(step_s: int, now_ns: int) -> int:
+    """Return the end of the latest interval of a step that is over."""
+    step_ns = step_s * NANOSECONDS_PER_SECOND
+    return (now_ns - LATENESS_NS) // step_ns * step_ns
+
+
+def average_until(session: Session, finer: int, step_s: int, *, now_ns: int) -> None:
+    """Make the means of the intervals of one step that are over, from behind the latest mean on."""
+    to_ns = end_of_averages(step_s, now_ns)
+    latest = session.scalar(
+        select(func.max(MeasurementRow.time_ns)).where(
+            MeasurementRow.step_s == step_s, MeasurementRow.time_ns < to_ns
+        )
+    )
+    from_ns = 0 if latest is None else latest + step_s * NANOSECONDS_PER_SECOND
+    insert_means(session, finer, step_s, from_ns, to_ns)
+
+
+def insert_means(
+    session: Session, finer: int, step_s: int, from_ns: int, to_ns: int, *, of_load_profile: str | None = None
+) -> None:
+    """Store the means of the rows of step `finer` in [from_ns, to_ns), weighted with their samples.
+
+    of_load_profile: a motor; only of its load profile's rows, and only means that are not there.
+    """
     step_ns = step_s * NANOSECONDS_PER_SECOND
     begin = (MeasurementRow.time_ns - MeasurementRow.time_ns % step_ns).label("begin")
     means = (
@@ -141,6 +172,7 @@ def _average(session: Session, finer: int, step_s: int, from_ns: int, to_ns: int
             literal(step_s),
             begin,
             func.sum(MeasurementRow.samples),
+            func.max(MeasurementRow.source),
             *(_of_an_interval(quantity) for quantity in MeteredQuantity),
         )
         .where(
@@ -148,7 +180,17 @@ def _average(session: Session, finer: int, step_s: int, from_ns: int, to_ns: int
         )
         .group_by(MeasurementRow.motor, begin)
     )
-    names = ["motor", "step_s", "time_ns", "samples", *MeteredQuantity]
+    if of_load_profile is not None:
+        mean = aliased(MeasurementRow)
+        is_there = exists().where(
+            mean.motor == MeasurementRow.motor, mean.step_s == step_s, mean.time_ns == begin.element
+        )
+        means = means.where(
+            MeasurementRow.motor == of_load_profile,
+            MeasurementRow.source == MeasurementSource.LOAD_PROFILE,
+            ~is_there,
+        )
+    names = ["motor", "step_s", "time_ns", "samples", "source", *MeteredQuantity]
     session.execute(insert(MeasurementRow).from_select(names, means))
 
 
@@ -163,5 +205,5 @@ def _of_an_interval(quantity: MeteredQuantity) -> ColumnElement[Any]:
     return func.sum(column * MeasurementRow.samples) / func.nullif(func.sum(weight), 0)
 
 
-def _measurement(time_ns: int, samples: int, *values: float | None) -> Measurement:
-    return Measurement(time_ns, samples, dict(zip(_NAMES, values, strict=True)))
+def _measurement(time_ns: int, samples: int, source: MeasurementSource, *values: float | None) -> Measurement:
+    return Measurement(time_ns, samples, dict(zip(_NAMES, values, strict=True)), source)

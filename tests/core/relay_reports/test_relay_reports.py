@@ -13,8 +13,9 @@ from hypothesis import strategies as st
 from core.recordings.cev.compressed_ascii import closed
 from core.relay_reports import (
     ReportError,
+    ReportKind,
     StateChange,
-    other_report,
+    kind_of_report,
     read_load_profile,
     read_motor_starts,
     read_motor_statistics,
@@ -108,16 +109,34 @@ def test_dates_are_in_the_order_of_the_relays_setting() -> None:
 
 
 @pytest.mark.parametrize(
-    ("report", "word"),
-    [(SER.encode(), "SER"), (CSER, "SER"), (LDP.encode(), "LDP"), (CLDP, "LDP"), (MOT.encode(), "MOT")],
+    ("report", "kind"),
+    [
+        (SER.encode(), "SER"),
+        (CSER, "SER"),
+        (LDP.encode(), "LDP"),
+        (CLDP, "LDP"),
+        (MOT.encode(), "MOT"),
+        (MSR.encode(), "MSR"),
+        (MSR_BY_PHASE.encode(), "MSR"),
+        (MSR.replace("7.10", "x").encode(), "MSR"),
+        (LDP.replace("1.203", "x").encode(), "LDP"),
+        ((HEAD + "LOAD PROFILE\n\nNo Load Profile Data\n").encode(), "LDP"),
+        ((HEAD + "MOTOR START REPORT\n\nNo Motor Start Data Available\n").encode(), "MSR"),
+    ],
 )
-def test_another_report_is_told_by_its_name(report: bytes, word: str) -> None:
-    assert f"({word})" in str(other_report(report))
+def test_the_kind_of_a_report_is_found_though_it_has_an_error_or_no_data(report: bytes, kind: str) -> None:
+    assert kind_of_report(report) == ReportKind(kind)
 
 
-def test_no_other_report_is_seen_in_a_motor_start_report() -> None:
-    for report in (MSR, MSR_BY_PHASE, MSR.replace("7.10", "x"), "hello"):
-        assert other_report(report.encode()) is None
+def test_a_text_that_is_no_report_has_no_kind() -> None:
+    with pytest.raises(ReportError, match=r"end: expected a report of motor starts \(MSR\)"):
+        kind_of_report("hello")
+
+
+@pytest.mark.parametrize("year", ["1969", "9999"])
+def test_a_year_that_no_relay_has_is_refused(year: str) -> None:
+    with pytest.raises(ReportError, match=f"a year from 1970 to 2199, found '{year}'"):
+        read_load_profile(LDP.replace("03/29/2026 10:14", f"03/29/{year} 10:14"))
 
 
 def test_a_file_is_read_like_its_text(tmp_path: Path) -> None:
@@ -191,6 +210,8 @@ def test_what_cannot_be_read_is_refused_with_its_place(
 )
 def test_damaged_reports_are_read_or_refused(report: bytes, place: int, damage: bytes) -> None:
     damaged = report[:place] + damage + report[place + len(damage) :]
+    with suppress(ReportError):
+        assert kind_of_report(damaged) in ReportKind
     with suppress(ReportError):
         assert all(change.element or change.asserted is None for change in read_sequence_of_events(damaged))
     with suppress(ReportError):

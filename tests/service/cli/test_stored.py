@@ -90,21 +90,25 @@ def test_starts(mcc: Mcc, repository: Repository, store: RecordingStore) -> None
 def test_starts_of_a_report(mcc: Mcc, tmp_path: Path) -> None:
     report = tmp_path / "MSR.TXT"
     report.write_text(MSR, encoding="ascii")
-    first, second = mcc("starts", "PUMP-A1", "--import", str(report)).splitlines()
+    first, second = mcc("import-report", "PUMP-A1", str(report)).splitlines()
     assert "10:15:01 UTC: a start that was not recorded (" in first
     assert "08:00:00 UTC: left out:" in second
-    assert "was there already" in mcc("starts", "PUMP-A1", "--import", str(report))
-    told = json.loads(mcc("starts", "PUMP-A1", "--import", str(report), "--json"))
-    assert [one["outcome"] for one in told["starts"]] == ["known"]
+    assert "was there already" in mcc("import-report", "PUMP-A1", str(report))
+    told = json.loads(mcc("import-report", "PUMP-A1", str(report), "--json"))
+    assert [one["outcome"] for one in told["motor_starts"]["starts"]] == ["known"]
     [start] = rows(mcc("starts", "PUMP-A1", "--csv"))
     assert (start["source"], start["acceleration_s"], start["recording_id"]) == ("report", "0.3", "")
 
     report.write_text(LDP, encoding="ascii")
-    assert "found a load profile (LDP)" in mcc("starts", "PUMP-A1", "--import", str(report), ends=1)
+    added, left_out = mcc("import-report", "PUMP-A1", str(report)).splitlines()
+    assert added == "rows of load that were not known: 2"
+    assert left_out == "column P: left out: no report tells its unit: say power_unit, W or kW"
+    again = mcc("import-report", "PUMP-A1", str(report), "--power-unit", "W")
+    assert "rows of quarters of an hour that are known already: 2" in again
     report.write_text(MSR.replace("7.10", "x"), encoding="ascii")
-    refused = " ".join(mcc("starts", "PUMP-A1", "--import", str(report), ends=1).split())
+    refused = " ".join(mcc("import-report", "PUMP-A1", str(report), ends=1).split())
     assert "line 13, I(A): expected a number, found 'x'" in refused
-    assert "expected a file" in mcc("starts", "PUMP-A1", "--import", str(tmp_path / "none"), ends=1)
+    assert "expected a file" in mcc("import-report", "PUMP-A1", str(tmp_path / "none"), ends=1)
 
 
 def test_a_trend(mcc: Mcc, recorded: list[str]) -> None:

@@ -22,7 +22,7 @@ def measured(repository: Repository, step_s: int, motor: str = "PUMP-A1") -> lis
 
 
 def test_every_quantity_has_its_column() -> None:
-    others = ["motor", "step_s", "time_ns", "samples"]
+    others = ["motor", "step_s", "time_ns", "samples", "source"]
     assert MeasurementRow.__table__.columns.keys() == [*others, *MeteredQuantity]
 
 

@@ -36,8 +36,8 @@ class StartReportRows(Sessions):
                 outcome.value: sum(one.outcome is outcome for one in imported) for outcome in ReportOutcome
             }
             if counts[ReportOutcome.ADDED] or counts[ReportOutcome.JOINED]:
-                action = AuditAction.STARTS_IMPORTED
-                note_change(session, by, action, ("motor", motor), now_ns=now_ns, after=counts)
+                action, after = AuditAction.REPORT_IMPORTED, {"report": "MSR", **counts}
+                note_change(session, by, action, ("motor", motor), now_ns=now_ns, after=after)
             return imported
 
 

@@ -77,11 +77,9 @@ REQUESTS: Changes = {
         lambda it: it.client.post(f"{API}/recordings", data={"motor": "PUMP-A1"}, files=it.files()),
         "recording-uploaded",
     ),
-    "POST /api/v1/motors/{name}/starts/reports": (
-        lambda it: it.client.post(
-            f"{MOTOR}/starts/reports", content=MSR, headers={"Content-Type": "text/plain"}
-        ),
-        "starts-imported",
+    "POST /api/v1/motors/{name}/reports": (
+        lambda it: it.client.post(f"{MOTOR}/reports", content=MSR, headers={"Content-Type": "text/plain"}),
+        "report-imported",
     ),
     "DELETE /api/v1/recordings/{recording_id}": (
         lambda it: it.client.delete(f"{API}/recordings/{it.recording()}", params={"reason": "a test"}),

@@ -109,7 +109,7 @@ def test_every_route_refuses_a_body_beyond_its_limit(
             assert str(limit) in refused.json()["detail"]
     assert larger == {
         ("POST", "/api/v1/recordings"): context.settings.max_upload_bytes,
-        ("POST", "/api/v1/motors/{name}/starts/reports"): MAX_REPORT_BYTES,
+        ("POST", "/api/v1/motors/{name}/reports"): MAX_REPORT_BYTES,
     }
 
 

@@ -1,0 +1,1 @@
+"""Text reports of relays that people bring: starts and load profiles."""

@@ -1,0 +1,105 @@
+"""Load profiles (LDP): their rows become measured values of the motor."""
+
+from collections.abc import Mapping
+from enum import StrEnum
+from typing import Final
+
+from core.relay_reports import LoadRows, read_load_profile
+from core.relay_reports.clock_times import DateOrder
+from service.api.relay_reports.clocks import LATER, RelayClock
+from service.api.relay_reports.errors import refused
+from service.api.relay_reports.schemas import LeftOutColumn, LoadImport
+from service.plant import MeteredQuantity
+from service.storage import Repository
+from service.storage.records import Actor, Sample
+
+
+class PowerUnit(StrEnum):
+    """Unit of the powers P and Q of a load profile; var and kvar are meant, too."""
+
+    W = "W"
+    KW = "kW"
+
+
+_PLAIN: Final[Mapping[str, MeteredQuantity]] = {
+    "IA_MAG": MeteredQuantity.IA,
+    "IB_MAG": MeteredQuantity.IB,
+    "IC_MAG": MeteredQuantity.IC,
+    "VAB_MAG": MeteredQuantity.VAB,
+    "VBC_MAG": MeteredQuantity.VBC,
+    "VCA_MAG": MeteredQuantity.VCA,
+    "VA_MAG": MeteredQuantity.VA,
+    "VB_MAG": MeteredQuantity.VB,
+    "VC_MAG": MeteredQuantity.VC,
+    "PF": MeteredQuantity.POWER_FACTOR,
+    "FREQ": MeteredQuantity.FREQUENCY,
+}
+"""Columns in A, V and Hz."""
+_POWERS: Final = {"P": MeteredQuantity.POWER, "Q": MeteredQuantity.REACTIVE_POWER}
+_SIGNED: Final = {*_POWERS.values(), MeteredQuantity.POWER_FACTOR}
+_FACTORS: Final = {PowerUnit.W: 1.0, PowerUnit.KW: 1000.0}
+_NO_UNIT: Final = "no report tells its unit: say power_unit, W or kW"
+_NO_PLACE: Final = "it is none of the quantities that the service keeps"
+
+
+def keep_load_profile(
+    repository: Repository,
+    motor: str,
+    report: bytes,
+    date_order: DateOrder,
+    clock: RelayClock,
+    *,
+    power_unit: PowerUnit | None,
+    by: Actor,
+    now_ns: int,
+) -> LoadImport:
+    """Keep the rows of a load profile. Raises ReportError, ProblemError."""
+    rows = read_load_profile(report, date_order=date_order)
+    factors, left_out = _columns(rows, power_unit)
+    if rows.values and not factors:
+        raise refused("body: heading", f"expected IA_MAG or another quantity, found {', '.join(rows.values)}")
+    _refuse_negative(rows, factors)
+    times_ns = [clock.utc_ns(time_ns) for time_ns in rows.time_ns.tolist()]
+    if times_ns and all(map(clock.is_ahead, times_ns)):
+        raise refused("body", f"none of {len(times_ns)} rows can be kept: {LATER}")
+    samples = [
+        Sample(
+            motor,
+            time_ns,
+            {
+                quantity.value: factor * float(rows.values[label][place])
+                for label, (quantity, factor) in factors.items()
+            },
+        )
+        for place, time_ns in enumerate(times_ns)
+    ]
+    counts = repository.add_load_profile(motor, samples, by=by, now_ns=now_ns)
+    return LoadImport(
+        added=counts.added,
+        known=counts.known,
+        not_over=counts.not_over,
+        quantities=[quantity.value for quantity, _ in factors.values()],
+        left_out=left_out,
+    )
+
+
+def _columns(
+    rows: LoadRows, unit: PowerUnit | None
+) -> tuple[dict[str, tuple[MeteredQuantity, float]], list[LeftOutColumn]]:
+    """Return quantity and factor of each column that is kept, and why others are not."""
+    kept, left_out = {}, []
+    for label in rows.values:
+        if label in _PLAIN:
+            kept[label] = (_PLAIN[label], 1.0)
+        elif label in _POWERS and unit is not None:
+            kept[label] = (_POWERS[label], _FACTORS[unit])
+        else:
+            left_out.append(LeftOutColumn(column=label, reason=_NO_UNIT if label in _POWERS else _NO_PLACE))
+    return kept, left_out
+
+
+def _refuse_negative(rows: LoadRows, columns: Mapping[str, tuple[MeteredQuantity, float]]) -> None:
+    for label, (quantity, _) in columns.items():
+        lowest = float(rows.values[label].min(initial=0.0))
+        if quantity not in _SIGNED and lowest < 0.0:
+            raise refused(f"body: {label}", f"expected 0 or more, found {lowest:g}")

@@ -1,0 +1,59 @@
+"""Documents of what became of a relay's text report."""
+
+from pydantic import Field
+
+from core.relay_reports import ReportKind
+from service.api.document import Document, Listed
+from service.api.times import Time
+from service.storage.records import ReportOutcome
+
+
+class ImportedStart(Document):
+    """A start of a report: `added`, `joined` with the recording of the same start, or `known` already."""
+
+    id: str
+    time: Time = Field(validation_alias="time_ns")
+    outcome: ReportOutcome
+
+
+class LeftOutStart(Document):
+    """A start of a relay's report that cannot be kept, and why."""
+
+    time: Time
+    reason: str
+
+
+class StartImport(Document):
+    """What became of the starts of a relay's report."""
+
+    starts: Listed[ImportedStart]
+    left_out: Listed[LeftOutStart]
+
+
+class LeftOutColumn(Document):
+    """A column of a load profile that cannot be kept, and why."""
+
+    column: str
+    reason: str
+
+
+class LoadImport(Document):
+    """What became of the rows of a load profile.
+
+    added: rows that became measured values of these quantities.  known: of quarters of an hour that have
+    measured values already.  not_over: of one that is not over, to be brought later, or ahead of the time.
+    """
+
+    added: int
+    known: int
+    not_over: int
+    quantities: Listed[str]
+    left_out: Listed[LeftOutColumn]
+
+
+class ReportImport(Document):
+    """What became of a report, by its kind; the other fields are null."""
+
+    kind: ReportKind
+    motor_starts: StartImport | None = None
+    load_profile: LoadImport | None = None
