@@ -1,5 +1,5 @@
 # make install | demo | test | test-all | lint | bench | fuzz SECONDS=60 | interop [LIBIEC61850=TREE]    (PYTHON=python3.11 make install: another interpreter)
-# make chaos SEED=1 MINUTES=2 RECORDINGS=300 RELAYS=12 [FAULTS=1] [JSON=FILE] [DATA=DIR]     (faults of all kinds: docs/evidence/track-record.md)
+# make chaos SEED=1 MINUTES=2 RECORDINGS=300 RELAYS=12 [FAULTS=1] [DATABASE=postgresql] [JSON=FILE] [DATA=DIR]     (faults of all kinds: docs/evidence/track-record.md)
 # make bench [QUICK=1] [DATA=FOLDER]     (DATA: measured recordings, for docs/evidence/condition.md)
 # make corpus DIR=FOLDER     (how recordings and SCL files of a folder are read: docs/evidence/corpus.md)
 # make hostile CASES=10000 SEED=1     (a relay that answers nonsense: docs/evidence/interoperability.md)
@@ -57,7 +57,7 @@ hostile: install
 chaos: install
 	$(BIN)/python -m tests.chaos --seed $(or $(SEED),1) --minutes $(or $(MINUTES),2) \
 		--recordings $(or $(RECORDINGS),300) --relays $(or $(RELAYS),12) \
-		$(if $(FAULTS),--faults $(FAULTS)) $(if $(JSON),--json $(JSON)) $(if $(DATA),--data $(DATA))
+		$(if $(FAULTS),--faults $(FAULTS)) $(if $(DATABASE),--database $(DATABASE)) $(if $(JSON),--json $(JSON)) $(if $(DATA),--data $(DATA))
 
 compose-test: install
 	@test -n "$(COMPOSE)" || { echo "compose-test: no Docker engine answers; name a compose command with COMPOSE" >&2; exit 1; }

@@ -29,7 +29,7 @@ from service.configuration.problems import Problems
 from service.configuration.relay_access import clear_passwords
 from service.configuration.settings import Settings, SettingsError
 from service.jobs import JobRunner
-from service.jobs.runner import JobLimits
+from service.jobs.limits import JobLimits
 from service.jobs.worker import diagnose_recording, prepare_worker
 from service.notifications.checking import channel_problems, report_problems, route_problems, warnings
 from service.notifications.work import NotificationWork

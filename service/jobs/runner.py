@@ -6,7 +6,6 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from concurrent.futures import BrokenExecutor, Future
 from contextlib import suppress
-from dataclasses import dataclass
 from functools import partial
 
 import structlog
@@ -18,6 +17,7 @@ from core.machines.parameters import Motor
 from service.condition.record_times import ImpossibleTimeError, require_possible_time
 from service.condition.work import ConditionTask, ConditionWork
 from service.jobs.answers import Answers
+from service.jobs.limits import JobLimits
 from service.jobs.relay_time import TriggeredRecord, note_relay_time
 from service.jobs.task import Diagnosed, DiagnosisTask, Outcome, Rejected, Task
 from service.jobs.worker_pool import NoWorkersError, WorkerPool
@@ -27,7 +27,6 @@ from service.storage.errors import NotFoundError, RunnerEndedError, UnstorableDi
 from service.storage.records import ClaimedJob
 from service.storage.repository import Repository
 from service.storage.texts import storable
-from service.timing.backoff import Backoff
 from service.timing.boot_clock import boot_time_s
 from service.timing.database_silence import does_not_answer
 from service.timing.peer_liveness import PeerLiveness
@@ -39,22 +38,6 @@ RENEWALS_A_LEASE = 3
 
 CONDITION_TIMEOUT_S = 60.0
 """Tasks for conditions end after a second; one that lasts so long hangs."""
-
-
-@dataclass(frozen=True, slots=True)
-class JobLimits:
-    """Hold what the settings say of jobs.
-
-    workers: how many at once.  job_timeout_s: how long each may take.  attempts: how often it is tried.
-    backoff: pauses before it is tried again.  lease_s: others do the jobs of a runner that has not renewed
-    its lease for so long.
-    """
-
-    workers: int
-    job_timeout_s: float
-    attempts: int
-    backoff: Backoff
-    lease_s: float
 
 
 class JobRunner:
@@ -97,6 +80,7 @@ class JobRunner:
         self._pool = WorkerPool(limits.workers, prepare_worker, is_ending)
         self._pool_problem: str | None = None
         self._in_flight: dict[str, Future[Outcome]] = {}
+        self._may_hold_unknown_jobs = False
         self._results: deque[tuple[ClaimedJob, Future[Outcome]]] = deque()
         self._conditions = conditions
         self._condition_results: deque[tuple[ConditionTask, Future[int]]] = deque()
@@ -147,8 +131,7 @@ class JobRunner:
         self._loading = self._pool.loading()
         while self._has_free_worker() and self._answers.begin(self._pool):
             pass
-        while self._has_free_worker() and self._claim():
-            pass
+        self._claim_jobs()
         while self._has_free_worker() and self._begin_condition_task():
             pass
 
@@ -211,6 +194,21 @@ class JobRunner:
     def _release(self, job_id: str) -> None:
         with suppress(NotFoundError):  # its recording was deleted meanwhile
             self._repository.release_job(job_id, runner=self._id)
+
+    def _claim_jobs(self) -> None:
+        """Claim as many jobs as workers are free. Raises SQLAlchemyError.
+
+        A claim may have been kept though the database's answer was lost. Such jobs go back first: nobody
+        else takes them from a runner that lives.
+        """
+        if self._may_hold_unknown_jobs:
+            released = self._repository.release_unknown_jobs(self._id, self._in_flight)
+            if released:
+                log.info("jobs whose claim was cut off are queued again", number=released)
+        self._may_hold_unknown_jobs = True
+        while self._has_free_worker() and self._claim():
+            pass
+        self._may_hold_unknown_jobs = False
 
     def _claim(self) -> bool:
         """Claim the next job and give it to a worker. Returns False where there is none to do."""

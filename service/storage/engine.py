@@ -29,6 +29,18 @@ WAITS_S = "statorwatch_busy_timeout_s"
 """This execution option says how long a writing connection waits for its turn [s]."""
 
 
+SILENCE = {
+    "connect_timeout": "10",
+    "keepalives_idle": "10",
+    "keepalives_interval": "5",
+    "keepalives_count": "3",
+    "tcp_user_timeout": "25000",
+}
+"""A PostgreSQL server that is cut off without a word is given up after 25 s, not after hours.
+
+Parameters of libpq, in s, and the last one in ms. What the URL says itself stands."""
+
+
 def connect(url: str, *, busy_timeout_s: float = BUSY_TIMEOUT_S) -> Engine:
     """Return the engine for an SQLAlchemy URL (SQLite or PostgreSQL).
 
@@ -42,7 +54,11 @@ def connect(url: str, *, busy_timeout_s: float = BUSY_TIMEOUT_S) -> Engine:
         if parsed.drivername == "postgresql":
             parsed = parsed.set(drivername=POSTGRESQL)
         try:
-            return create_engine(parsed, json_serializer=serializer, pool_pre_ping=True)
+            return create_engine(
+                parsed.set(query=SILENCE | dict(parsed.query)),
+                json_serializer=serializer,
+                pool_pre_ping=True,
+            )
         except ModuleNotFoundError as error:
             raise StorageError(
                 f"database_url: {parsed.drivername} needs the Python package {error.name!r}, which is not "

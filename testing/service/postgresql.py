@@ -6,7 +6,8 @@ import signal
 import subprocess
 import tempfile
 import uuid
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -30,6 +31,8 @@ OPTIONS = {
     "max_connections": "200",
     "shared_buffers": "32MB",
 }
+"""For tests that are over in a moment: nothing need outlive the server."""
+
 TEMPLATE = "migrated"
 
 
@@ -43,39 +46,90 @@ def binaries() -> Path | None:
 
 
 class PostgresServer:
-    """A running server. Its databases are copies of one that is migrated once."""
+    """A server. Its databases are copies of one that is migrated once."""
 
-    def __init__(self, socket: Path) -> None:
-        self._socket = socket
+    def __init__(self, programs: Path, directory: Path, options: Mapping[str, str]) -> None:
+        """directory: for its data, its log and its socket."""
+        self._programs = programs
+        self._directory = directory
+        self._options = options
+        self._as_owner = ["setpriv", "--pdeathsig=QUIT"]
+        if os.getuid() == 0:
+            shutil.chown(directory, OWNER)
+            self._as_owner += [f"--reuid={OWNER}", f"--regid={OWNER}", "--init-groups"]
+        # The server ends with the thread that has started it, so that one has to live as long.
+        self._starting = ThreadPoolExecutor(1, "postgresql")
+        self._process: subprocess.Popen[bytes] | None = None
         self._migrated = False
+
+    @property
+    def log(self) -> Path:
+        """What the server says."""
+        return self._directory / "log"
+
+    @property
+    def _data(self) -> Path:
+        return self._directory / "data"
+
+    def make(self) -> None:
+        """Make the files of the server."""
+        making = [str(self._programs / "initdb"), f"--pgdata={self._data}", f"--username={OWNER}"]
+        making += ["--auth=trust", "--encoding=UTF8", "--no-locale", "--no-sync"]
+        subprocess.run([*self._as_owner, *making], check=True, capture_output=True, cwd=self._directory)
+
+    def start(self) -> None:
+        """Start it, and wait until it answers."""
+        process = self._process = self._starting.submit(self._started).result()
+        wait_until(lambda: process.poll() is not None or self.answers(), "PostgreSQL to answer")
+        assert process.poll() is None, self.log.read_text()
+
+    def stop(self, number: signal.Signals = signal.SIGQUIT) -> None:
+        """End it: SIGINT is a fast shutdown, SIGQUIT one without any care, as a crash."""
+        if self._process is not None:
+            self._process.send_signal(number)
+            self._process.wait()
+
+    def close(self) -> None:
+        """End it for good."""
+        self.stop()
+        self._starting.shutdown()
+
+    def _started(self) -> "subprocess.Popen[bytes]":
+        options = [f"--{name}={value}" for name, value in self._options.items()]
+        command = [*self._as_owner, str(self._programs / "postgres")]
+        command += ["-D", str(self._data), "-k", str(self._directory)]
+        with self.log.open("ab") as log:
+            return subprocess.Popen([*command, *options], stdout=log, stderr=log, cwd=self._directory)
 
     def url(self, database: str) -> str:
         """SQLAlchemy URL of a database of this server."""
-        return f"postgresql+psycopg://{OWNER}@/{database}?host={self._socket}"
+        port = self._options.get("port", "5432")
+        return f"postgresql+psycopg://{OWNER}@/{database}?host={self._directory}&port={port}"
 
     @contextmanager
     def database(self, *, migrated: bool = True) -> Iterator[str]:
         """The URL of a database of its own."""
         if migrated and not self._migrated:
-            self._execute(f"CREATE DATABASE {TEMPLATE}")
+            self.execute(f"CREATE DATABASE {TEMPLATE}")
             migrate(self.url(TEMPLATE))
             self._migrated = True
         name = f"test_{uuid.uuid4().hex}"
-        self._execute(f"CREATE DATABASE {name} TEMPLATE {TEMPLATE if migrated else 'template0'}")
+        self.execute(f"CREATE DATABASE {name} TEMPLATE {TEMPLATE if migrated else 'template0'}")
         try:
             yield self.url(name)
         finally:
-            self._execute(f"DROP DATABASE {name} WITH (FORCE)")
+            self.execute(f"DROP DATABASE {name} WITH (FORCE)")
 
     def answers(self) -> bool:
         """Whether the server can be asked."""
         try:
-            self._execute("SELECT 1")
+            self.execute("SELECT 1")
         except sqlalchemy.exc.OperationalError:
             return False
         return True
 
-    def _execute(self, statement: str) -> None:
+    def execute(self, statement: str) -> None:
+        """Have the server do something, in no transaction."""
         engine = sqlalchemy.create_engine(self.url("postgres"), isolation_level="AUTOCOMMIT")
         with engine.connect() as connection:
             connection.exec_driver_sql(statement)
@@ -83,35 +137,15 @@ class PostgresServer:
 
 
 @contextmanager
-def serving_postgresql(folder: Path) -> Iterator[PostgresServer]:
+def serving_postgresql(folder: Path, options: Mapping[str, str] = OPTIONS) -> Iterator[PostgresServer]:
     """A server of the programs in `folder` that ends with the block, and with this process at the latest."""
     # Not in pytest's folder: the server's user may not enter that, and a socket's path is short.
     # A database is 300 files, and each test has one of its own: in memory they are copied sooner.
     with tempfile.TemporaryDirectory(prefix="pg-", dir=memory_folder(), ignore_cleanup_errors=True) as name:
-        directory = Path(name)
-        as_owner: list[str] = ["setpriv", "--pdeathsig=QUIT"]
-        if os.getuid() == 0:
-            shutil.chown(directory, OWNER)
-            as_owner += [f"--reuid={OWNER}", f"--regid={OWNER}", "--init-groups"]
-        data = directory / "data"
-        making = [str(folder / "initdb"), f"--pgdata={data}", f"--username={OWNER}", "--auth=trust"]
-        making += ["--encoding=UTF8", "--no-locale", "--no-sync"]
-        subprocess.run([*as_owner, *making], check=True, capture_output=True, cwd=directory)
-        options = [f"--{name}={value}" for name, value in OPTIONS.items()]
-        with (
-            (directory / "log").open("wb") as log,
-            subprocess.Popen(
-                [*as_owner, folder / "postgres", "-D", data, "-k", directory, *options],
-                stdout=log,
-                stderr=log,
-                cwd=directory,
-            ) as process,
-        ):
-            try:
-                server = PostgresServer(directory)
-                wait_until(lambda: process.poll() is not None or server.answers(), "PostgreSQL to answer")
-                assert process.poll() is None, (directory / "log").read_text()
-                yield server
-            finally:
-                process.send_signal(signal.SIGQUIT)
-                process.wait()
+        server = PostgresServer(folder, Path(name), options)
+        server.make()
+        try:
+            server.start()
+            yield server
+        finally:
+            server.close()

@@ -1,4 +1,7 @@
-"""python -m tests.chaos [--seed N] [--minutes M] [--recordings R] [--relays N] [--faults F] [--json FILE]"""
+"""python -m tests.chaos [--seed N] [--minutes M] [--recordings R] [--relays N] [--faults F]
+
+[--database sqlite|postgresql] [--json FILE]
+"""
 
 import argparse
 import signal
@@ -24,7 +27,14 @@ def main() -> int:
     arguments = _arguments()
     enter_own_mounts()
     signal.signal(signal.SIGTERM, lambda _number, _frame: sys.exit(1))
-    order = Order(arguments.seed, arguments.minutes, arguments.recordings, arguments.relays, arguments.faults)
+    order = Order(
+        arguments.seed,
+        arguments.minutes,
+        arguments.recordings,
+        arguments.relays,
+        arguments.faults,
+        arguments.database,
+    )
     console = Console(stderr=True, highlight=False, soft_wrap=True)
     began_s = time.monotonic()
     console.print(order.command)
@@ -55,6 +65,7 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--recordings", type=int, default=300)
     parser.add_argument("--relays", type=int, default=12)
     parser.add_argument("--faults", type=float, default=1.0, help="times the usual number of faults a minute")
+    parser.add_argument("--database", choices=["sqlite", "postgresql"], default="sqlite")
     parser.add_argument("--json", type=Path)
     parser.add_argument("--data", type=Path, help="an empty directory to keep logs in")
     return parser.parse_args()

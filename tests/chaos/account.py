@@ -1,6 +1,5 @@
 """What the service says it has: over REST, and in its store and database once it has ended."""
 
-import sqlite3
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -120,14 +119,3 @@ def left_arriving(store: Path) -> list[str]:
     """What lies in the place for what is arriving: files, and where."""
     incoming = store / "incoming"
     return sorted(str(path.relative_to(incoming)) for path in incoming.rglob("*") if path.is_file())
-
-
-def integrity(database: Path) -> str:
-    """What SQLite says of its file: "ok"."""
-    connection = sqlite3.connect(database)
-    try:
-        whole = [str(line[0]) for line in connection.execute("PRAGMA integrity_check")]
-        orphans = [str(line) for line in connection.execute("PRAGMA foreign_key_check")]
-    finally:
-        connection.close()
-    return "; ".join([*whole, *orphans])

@@ -38,6 +38,7 @@ class Evidence:
     at_last: Handles
     exit_code: int | None
     integrity: str
+    diagnosed_twice: Sequence[str]
     noticed: Sequence[str]
     open_matters: Sequence[str]
     pulled_bytes: int
@@ -53,6 +54,7 @@ class Evidence:
             *of_triggers(self.triggers, self.requests, self.truth, self.rows),
             *(Breach("leftover", "", name, "half arrived, and never removed") for name in self.left_arriving),
             *self._of_processes(),
+            *(Breach("doubled", "", "diagnosis", what) for what in self.diagnosed_twice),
             *([] if self.integrity == "ok" else [Breach("integrity", "", "database", self.integrity)]),
         ]
 

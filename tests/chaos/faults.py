@@ -2,7 +2,6 @@
 
 import os
 import signal
-import sqlite3
 import time
 from collections.abc import Callable, Sequence
 from contextlib import suppress
@@ -11,6 +10,7 @@ from threading import Lock
 
 from core.units import NANOSECONDS_PER_SECOND
 from mms import Client, MmsError
+from tests.chaos.database import Database
 from tests.chaos.disk import Disk
 from tests.chaos.history import History
 from tests.chaos.plant import SWITCHED, ChaosPlant
@@ -24,7 +24,6 @@ FILE_TIMES_JUMPS_S = (3600, -3600)
 CUT_AFTER_BYTES = (500, 4_000, 12_000)
 REQUEST_LIMIT_S = 3.0
 KEEP_FULL_PERIOD_S = 0.05
-LOCK_LIMIT_S = 30.0
 
 
 class Faults:
@@ -37,6 +36,7 @@ class Faults:
         service: ServedService,
         simulators: Sequence[SimulatorProcess],
         proxy: Proxy,
+        database: Database,
         disk: Disk,
         history: History,
     ) -> None:
@@ -58,7 +58,6 @@ class Faults:
             "disk-full": self._fill_disk,
             "disk-full-and-kill-gateway": self._fill_disk,
             "disk-full-and-kill-service": self._fill_disk,
-            "database-locked": self._lock_database,
             "service-clock-jump": self._jump_service_clock,
             "link-cut": lambda action: self._proxy.cut(action.relay),
             "link-cut-mid-file": self._cut_mid_file,
@@ -67,10 +66,11 @@ class Faults:
             "relays-power-cycle": self._power_cycle,
             "file-times-jump": self._jump_file_times,
             **dict.fromkeys(SWITCHED, self._switch),
+            **database.faults,
         }
 
     def do(self, action: Action) -> None:
-        """Raises OSError, sqlite3.Error, RuntimeError where the fault itself cannot be made."""
+        """Raises OSError, RuntimeError, errors of the database where the fault itself cannot be made."""
         self._history.note(f"{action.kind} {action.relay} {action.length_s:.1f} s #{action.number}")
         self._kinds[action.kind](action)
         if action.length_s:
@@ -117,31 +117,6 @@ class Faults:
         while time.monotonic() < until_s:
             self._disk.fill()
             time.sleep(KEEP_FULL_PERIOD_S)
-
-    def _lock_database(self, action: Action) -> None:
-        database = self._locked_database(time.monotonic() + LOCK_LIMIT_S)
-        try:
-            time.sleep(action.length_s)
-            database.execute("ROLLBACK")
-        finally:
-            database.close()
-
-    def _locked_database(self, until_s: float) -> sqlite3.Connection:
-        """Tried again where it fails: while the disk is full too, nobody can lock anything."""
-        while True:
-            database = sqlite3.connect(
-                self._service.data / "statorwatch.sqlite", timeout=LOCK_LIMIT_S, isolation_level=None
-            )
-            try:
-                database.execute("BEGIN IMMEDIATE")
-            except sqlite3.OperationalError as error:
-                database.close()
-                if time.monotonic() > until_s:
-                    raise
-                self._history.note(f"the database cannot be locked yet: {error}")
-                time.sleep(KEEP_FULL_PERIOD_S)
-            else:
-                return database
 
     def _jump_service_clock(self, action: Action) -> None:
         self._service.clock_offset.write_text(str(CLOCK_JUMPS_S[action.number % len(CLOCK_JUMPS_S)]))

@@ -13,7 +13,7 @@ class Order:
     """minutes: about how long it may take, start and settling included.
 
     faults: so many times the usual number of faults a minute. The usual one is for runs of minutes: the
-    service is hurt every eight seconds, and hardly gets to work.
+    service is hurt every eight seconds, and hardly gets to work.  database: "sqlite" or "postgresql".
     """
 
     seed: int
@@ -21,6 +21,7 @@ class Order:
     recordings: int
     relays: int
     faults: float = 1.0
+    database: str = "sqlite"
 
     @property
     def schedule_s(self) -> float:
@@ -32,5 +33,7 @@ class Order:
         """What runs the same again."""
         return (
             f"make chaos SEED={self.seed} MINUTES={self.minutes:g} RECORDINGS={self.recordings} "
-            f"RELAYS={self.relays}" + (f" FAULTS={self.faults:g}" if self.faults != 1.0 else "")
+            f"RELAYS={self.relays}"
+            + (f" FAULTS={self.faults:g}" if self.faults != 1.0 else "")
+            + (f" DATABASE={self.database}" if self.database != "sqlite" else "")
         )

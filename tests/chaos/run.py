@@ -12,6 +12,7 @@ from service.client.rest_client import ServiceClient
 from service.demo.addresses import free_ports
 from testing.waiting import eventually
 from tests.chaos import account
+from tests.chaos.database import Database, serving_database
 from tests.chaos.disk import Disk, SmallDisk, WritingLimit
 from tests.chaos.evidence import Evidence, growth
 from tests.chaos.faults import Faults
@@ -69,21 +70,23 @@ def run(order: Order, directory: Path, tell: Tell) -> Result:
         length_s=order.schedule_s,
         recordings=order.recordings,
         faults=order.faults,
+        database=order.database,
     )
     (directory / "schedule.txt").write_text("".join(f"{action}\n" for action in schedule), encoding="utf-8")
     tell(f"{len(schedule)} actions in {order.schedule_s:.0f} s, listed in {directory / 'schedule.txt'}")
-    service = _service(plant, directory, history)
-    disk = _disk(service, order.recordings)
-    tell(f"disk: {disk.description}")
     try:
-        evidence = _evidence(plant, schedule, service, disk, directory, history, tell)
+        with serving_database(order.database, directory / "data", history) as database:
+            service = _service(plant, directory, database, history)
+            disk = _disk(service, order.recordings)
+            tell(f"disk: {disk.description}")
+            evidence = _evidence(plant, schedule, service, database, disk, directory, history, tell)
     finally:
         (directory / "history.txt").write_text("\n".join(history.lines()) + "\n", encoding="utf-8")
     profiles = dict(Counter(relay.profile.name for relay in plant.relays))
     return result_of(order, profiles, disk.description, evidence)
 
 
-def _service(plant: ChaosPlant, directory: Path, history: History) -> ServedService:
+def _service(plant: ChaosPlant, directory: Path, database: Database, history: History) -> ServedService:
     """Two gateways, so that relays change hands."""
     own = {
         "MCC_SCD": str(plant.service_scd),
@@ -91,7 +94,8 @@ def _service(plant: ChaosPlant, directory: Path, history: History) -> ServedServ
         "MCC_RELAYS_PER_GATEWAY": str(-(-len(plant.relays) // 2)),
     }
     (port,) = free_ports(1)
-    return ServedService(directory / "data", directory / "service.log", SETTINGS | own, port, history)
+    settings = SETTINGS | own | database.settings
+    return ServedService(directory / "data", directory / "service.log", settings, port, history)
 
 
 def _disk(service: ServedService, recordings: int) -> Disk:
@@ -105,6 +109,7 @@ def _evidence(
     plant: ChaosPlant,
     schedule: Sequence[Action],
     service: ServedService,
+    database: Database,
     disk: Disk,
     directory: Path,
     history: History,
@@ -125,7 +130,7 @@ def _evidence(
             raise RuntimeError(f"links are not up: {links_not_up(client, plant)}; see {service.log}")
         account.ask_at_once(client)  # so that the service has opened what it opens for many requests
         at_first = _handles(service)
-        faults = Faults(plant, files, service, simulators, proxy, disk, history)
+        faults = Faults(plant, files, service, simulators, proxy, database, disk, history)
         tell(f"everything is up after {time.monotonic() - began_s:.0f} s")
         history.begin()
         noticed = _carry_out(schedule, faults, triggers, tell)
@@ -157,7 +162,8 @@ def _evidence(
             at_first=at_first,
             at_last=at_last,
             exit_code=exit_code,
-            integrity=account.integrity(service.data / "statorwatch.sqlite"),
+            integrity=database.integrity(),
+            diagnosed_twice=database.diagnosed_twice(),
             noticed=[*noticed, *service.unwanted_ends, *(hang for each in simulators for hang in each.hangs)],
             open_matters=open_matters,
             pulled_bytes=proxy.carried_bytes,

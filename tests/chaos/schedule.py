@@ -52,6 +52,15 @@ OF_A_RELAY = (
 )
 """Those of links come oftener, in proportion, where there are more relays than RELAYS_OF_A_RATE."""
 
+OF_POSTGRESQL = (
+    FaultKind("database-restarted", 0.5, 0.0, 6.0),
+    FaultKind("database-crashed", 0.5, 0.0, 6.0),
+    FaultKind("database-connections-ended", 1.5),
+    FaultKind("database-link-cut", 3.0),
+    FaultKind("database-link-frozen", 0.8, 1.0, 12.0),
+)
+"""Of a server beside the service, besides those that every database has."""
+
 RELAYS_OF_A_RATE = 10
 PAUSE_S = 1.0
 """A fault of a kind ends so long before the next of its kind begins [s]."""
@@ -73,7 +82,13 @@ class Action:
 
 
 def make_schedule(
-    plant: ChaosPlant, *, seed: int, length_s: float, recordings: int, faults: float = 1.0
+    plant: ChaosPlant,
+    *,
+    seed: int,
+    length_s: float,
+    recordings: int,
+    faults: float = 1.0,
+    database: str = "sqlite",
 ) -> list[Action]:
     """The actions in order. The same arguments give the same schedule.
 
@@ -87,6 +102,8 @@ def make_schedule(
     for kind in OF_A_RELAY:
         often = faults * (growth if kind.name.startswith("link-") else 1.0)
         actions += _faults(kind, random, length_s, _victims(kind, plant), often)
+    for kind in OF_POSTGRESQL if database == "postgresql" else ():
+        actions += _faults(kind, random, length_s, [""], faults)
     return sorted(actions)
 
 

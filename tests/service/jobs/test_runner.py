@@ -15,13 +15,14 @@ from threading import Event
 
 import pytest
 from sqlalchemy import Engine
+from sqlalchemy.exc import OperationalError
 
 from service.jobs import JobRunner
-from service.jobs.runner import JobLimits
+from service.jobs.limits import JobLimits
 from service.jobs.worker_process import follow_service
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect
-from service.storage.records import RemoteRecord
+from service.storage.records import ClaimedJob, RemoteRecord
 from service.storage.states import AlarmKind, JobState, RecordingRequestState, RecordingState
 from service.timing.backoff import Backoff
 from testing.service.plants import motor, two_motor_plant
@@ -269,6 +270,32 @@ def test_two_services_share_the_jobs_and_one_takes_over_from_a_killed_one(
         wait_until(lambda: ended(repository, recording_id))
     (found,) = repository.jobs(recording_id, limit=5).items
     assert (found.job.state, found.job.attempts) == (JobState.DONE, 2)
+
+
+class CutOff(Repository):
+    """The connection is cut after the first claim was kept, and before the answer has come."""
+
+    was_cut = False
+
+    def claim_job(self, *, now_ns: int, runner: str) -> ClaimedJob | None:
+        claimed = super().claim_job(now_ns=now_ns, runner=runner)
+        if claimed is not None and not self.was_cut:
+            self.was_cut = True
+            raise OperationalError("COMMIT", None, ConnectionResetError(), connection_invalidated=True)
+        return claimed
+
+
+@pytest.mark.parametrize("database_url", ["sqlite", "postgresql"], indirect=True)
+def test_a_claim_whose_answer_is_lost_holds_up_no_job(
+    repository: Repository, store: RecordingStore, engine: Engine
+) -> None:
+    recording_id = add(repository, store, "fine")
+    cut_off = CutOff(engine)
+    with running(cut_off, store):
+        wait_until(lambda: ended(repository, recording_id))
+    assert cut_off.was_cut
+    (found,) = repository.jobs(recording_id, limit=5).items
+    assert (found.job.state, found.job.attempts) == (JobState.DONE, 1)
 
 
 @contextmanager

@@ -14,7 +14,7 @@ from core.recordings.comtrade.writer import write
 from core.starts.measuring import measure_start
 from core.time_stamps import nanoseconds
 from service.jobs import Diagnosed, DiagnosisTask, JobRunner, Rejected
-from service.jobs.runner import JobLimits
+from service.jobs.limits import JobLimits
 from service.jobs.worker import diagnose_recording, prepare_worker
 from service.recording_store.store import RecordingStore
 from service.storage import Repository

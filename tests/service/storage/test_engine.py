@@ -17,3 +17,8 @@ from service.storage.errors import StorageError
 def test_what_cannot_be_connected_to_is_named(url: str, message: str) -> None:
     with pytest.raises(StorageError, match=message):
         connect(url)
+
+
+def test_a_server_that_is_cut_off_is_given_up_when_the_url_says_or_soon() -> None:
+    query = connect("postgresql+psycopg://mcc@db.example/mcc?connect_timeout=3").url.query
+    assert (query["connect_timeout"], query["tcp_user_timeout"]) == ("3", "25000")

@@ -5,7 +5,7 @@ import uuid
 from collections.abc import Mapping, Sequence
 
 from sqlalchemy import Select, func, or_, select, update
-from sqlalchemy.orm import Session, joinedload
+from sqlalchemy.orm import joinedload
 
 from core.classification.classification import Classification
 from core.condition.observation import Observation
@@ -15,7 +15,6 @@ from core.operation import AT_REST, EXPECTED
 from core.rotor.finding import RotorFinding
 from core.starts.examined import ExaminedStart
 from core.supply.figures import SupplyFigures
-from core.units import NANOSECONDS_PER_SECOND
 from service.audit.actions import AuditAction
 from service.storage.errors import (
     NotFoundError,
@@ -33,9 +32,10 @@ from service.storage.repository.history.rotor import keep_rotor_finding
 from service.storage.repository.history.starts import keep_start
 from service.storage.repository.history.supply import keep_supply
 from service.storage.repository.jobs.locks import lock_motor_of
+from service.storage.repository.jobs.steps import end_job, give_up_job, is_held, release, retry_or_give_up
 from service.storage.repository.recordings.baselines import baseline_rows
 from service.storage.repository.recordings.recordings import new_job, require_room
-from service.storage.repository.recordings.requests import diagnose_rows, fail_rows
+from service.storage.repository.recordings.requests import diagnose_rows
 from service.storage.repository.relays.clocks import withdraw_clock
 from service.storage.repository.sessions import Order, Sessions, found, only, page_of, record_of
 from service.storage.states import JobPriority, JobState, RecordingSource, RecordingState
@@ -138,10 +138,8 @@ class JobRows(Sessions):
         """Put a running job of the runner back as if it had not been claimed. Raises NotFoundError."""
         with self._write() as session:
             row = found(session, JobRow, job_id, "job", lock=True)
-            if _is_held(row, runner):
-                row.state = JobState.QUEUED
-                row.runner = None
-                row.attempts -= 1
+            if is_held(row, runner):
+                release(row)
 
     def finish_job(
         self,
@@ -176,7 +174,7 @@ class JobRows(Sessions):
             row = found(session, JobRow, job_id, "job", lock=True)
             if row.state is JobState.DONE:
                 return row.runner == runner
-            if not _is_held(row, runner):
+            if not is_held(row, runner):
                 return False
             recording = found(session, RecordingRow, row.recording_id, "recording", lock=True)
             document = _document(diagnosis, rotor, supply, classification)
@@ -184,7 +182,7 @@ class JobRows(Sessions):
                 update(DiagnosisRow).where(DiagnosisRow.recording_id == recording.id).values(current=False)
             )
             session.add(_diagnosis_row(row, recording.motor, diagnosis, document, recorded_ns, now_ns))
-            _end(row, JobState.DONE, None, now_ns)
+            end_job(row, JobState.DONE, None, now_ns)
             recording.state = RecordingState.DIAGNOSED
             recording.reason = None if left_out is None else storable(left_out)
             recording.recorded_ns = recorded_ns
@@ -213,8 +211,8 @@ class JobRows(Sessions):
         """
         with self._write() as session:
             row = found(session, JobRow, job_id, "job", lock=True)
-            if _is_held(row, runner):
-                _give_up(session, row, RecordingState.REJECTED, reason, now_ns)
+            if is_held(row, runner):
+                give_up_job(session, row, RecordingState.REJECTED, reason, now_ns)
 
     def retry_or_fail_job(
         self,
@@ -232,7 +230,7 @@ class JobRows(Sessions):
         """
         with self._write() as session:
             row = found(session, JobRow, job_id, "job", lock=True)
-            if _is_held(row, runner):
+            if is_held(row, runner):
                 pause_s = backoff.pause_s(row.attempts)
                 retry_or_give_up(
                     session, row, error, now_ns=now_ns, max_attempts=max_attempts, pause_s=pause_s
@@ -271,41 +269,6 @@ class JobRows(Sessions):
         )
         with self._read() as session:
             return {row.recording_id: row.verdict for row in session.execute(query)}
-
-
-def _end(row: JobRow, state: JobState, error: str | None, now_ns: int) -> None:
-    row.state = state
-    row.error = None if error is None else storable(error)
-    row.finished_ns = now_ns
-
-
-def _give_up(session: Session, row: JobRow, state: RecordingState, reason: str, now_ns: int) -> None:
-    """End a job without a result. A recording that has an earlier diagnosis keeps it."""
-    _end(row, JobState.FAILED, reason, now_ns)
-    recording = found(session, RecordingRow, row.recording_id, "recording", lock=True)
-    if recording.state is not RecordingState.DIAGNOSED:
-        recording.state = state
-        recording.reason = storable(reason)
-    fail_rows(session, recording.id, reason, now_ns)
-
-
-def _is_held(row: JobRow, runner: str) -> bool:
-    return row.state is JobState.RUNNING and row.runner == runner
-
-
-def retry_or_give_up(
-    session: Session, row: JobRow, error: str, *, now_ns: int, max_attempts: int, pause_s: float
-) -> None:
-    """Queue a running job again, or give it up after so many attempts."""
-    if row.attempts >= max_attempts:
-        reason = f"gave up after {row.attempts} attempts: {error}"
-        _give_up(session, row, RecordingState.FAILED, reason, now_ns)
-        return
-    row.state = JobState.QUEUED
-    row.runner = None
-    row.error = storable(error)
-    row.finished_ns = now_ns
-    row.not_before_ns = now_ns + round(pause_s * NANOSECONDS_PER_SECOND)
 
 
 def _diagnosis_row(

@@ -5,12 +5,14 @@ seen the count stand still for the time of a lease, by a clock of its own that o
 that runner dead and have its jobs queued again. What a dead runner still brings is not written.
 """
 
+from collections.abc import Collection
+
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from service.storage.errors import RunnerEndedError
 from service.storage.models import JobRow, JobRunnerRow
-from service.storage.repository.jobs.queue import retry_or_give_up
+from service.storage.repository.jobs.steps import release, retry_or_give_up
 from service.storage.repository.sessions import Sessions
 from service.storage.states import JobState
 
@@ -45,6 +47,19 @@ class JobRunnerRows(Sessions):
                 raise RunnerEndedError(runner)
             own.renewals += 1
             return {row.id: row.renewals for row in session.scalars(select(JobRunnerRow))}
+
+    def release_unknown_jobs(self, runner: str, known: Collection[str]) -> int:
+        """Put back the runner's jobs that it does not know of, as if they had not been claimed.
+
+        A connection that is cut during a commit leaves open whether a job was claimed. Returns their number.
+        """
+        running = select(JobRow).where(JobRow.state == JobState.RUNNING, JobRow.runner == runner)
+        with self._write() as session:
+            rows = session.scalars(running.order_by(JobRow.id).with_for_update(key_share=True)).all()
+            unknown = [row for row in rows if row.id not in known]
+            for row in unknown:
+                release(row)
+            return len(unknown)
 
     def end_runner(self, runner: str, *, now_ns: int, max_attempts: int, renewals: int | None = None) -> bool:
         """Queue the jobs of a runner again that is dead; with `renewals`, only if it still counts so many.
