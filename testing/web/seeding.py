@@ -168,6 +168,12 @@ def seed(data: Path, *, now_ns: int | None = None) -> str:
     return url
 
 
+def acknowledge_all(repository: Repository, motor: str) -> None:
+    """Acknowledge the alarms of a motor."""
+    for alarm in repository.open_alarms(motor=motor, limit=100).items:
+        repository.acknowledge_alarms([alarm.id], by=BY, comment=None, now_ns=time.time_ns())
+
+
 def _seed_motors(seeding: _Seeding, data: Path) -> None:
     repository, now_ns = seeding.repository, seeding.now_ns
     for observed in _developing(now_ns):

@@ -7,7 +7,7 @@ from playwright.sync_api import expect
 
 from service.storage.records import Actor, Role
 from testing.web.followers import until_followed
-from testing.web.seeding import FAULTY, STALE, STANDING, WATCHED, WELL
+from testing.web.seeding import FAULTY, STALE, STANDING, WATCHED, WELL, acknowledge_all
 from testing.web.site import PHONE, Site
 from testing.web.watched_page import WatchedPage
 
@@ -22,11 +22,6 @@ LOOKED_AT = """() => {{
 
 def motors_of(page: WatchedPage) -> list[str]:
     return page.page.locator("table.fleet th[scope=row] > a:first-child").all_inner_texts()
-
-
-def acknowledge_all(site: Site, motor: str) -> None:
-    for alarm in site.repository.open_alarms(motor=motor, limit=100).items:
-        site.repository.acknowledge_alarms([alarm.id], by=BY, comment=None, now_ns=time.time_ns())
 
 
 def test_the_worst_motor_comes_first_with_what_to_do(looked_at: Site) -> None:
@@ -94,7 +89,7 @@ def test_two_viewers_see_a_change_within_two_seconds(site: Site) -> None:
     pages[0].page.locator("tr", has_text=WELL).get_by_role("link", name=WELL).focus()
     kept = pages[0].page.locator("tr", has_text=WELL).element_handle()
     began = time.monotonic()
-    acknowledge_all(site, FAULTY)
+    acknowledge_all(site.repository, FAULTY)
     for page in pages:
         expect(page.page.locator("tr", has_text=FAULTY).locator(".calls")).to_have_count(0)
     assert time.monotonic() - began < 2.0
@@ -108,7 +103,7 @@ def test_a_page_that_nobody_looks_at_gives_its_connection_back(site: Site) -> No
     until_followed(site.app, 1)
     page.page.evaluate(LOOKED_AT.format("true"))
     until_followed(site.app, 0)
-    acknowledge_all(site, FAULTY)
+    acknowledge_all(site.repository, FAULTY)
     page.page.evaluate(LOOKED_AT.format("false"))
     expect(page.page.locator("tr", has_text=FAULTY).locator(".calls")).to_have_count(0)
 

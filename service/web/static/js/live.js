@@ -5,6 +5,12 @@ const FIRST_PAUSE_MS = 2_000;
 const LONGEST_PAUSE_MS = 60_000;
 const TOLD_AFTER_MS = 8_000;
 
+/** How often each change was told, by the name of its event. */
+const told = new Map();
+
+/** How often it had been told when a request for it began. */
+const toldBefore = new WeakMap();
+
 /** A stream of events that rests while the page is hidden, and comes back by itself. */
 class LiveSource extends EventTarget {
   onopen = null;
@@ -82,6 +88,7 @@ class LiveSource extends EventTarget {
   #hear(name) {
     this.#source.addEventListener(name, ({ data, lastEventId }) => {
       if (lastEventId !== "") this.#seen = lastEventId;
+      told.set(`sse:${name}`, (told.get(`sse:${name}`) ?? 0) + 1);
       this.dispatchEvent(new MessageEvent(name, { data, lastEventId }));
     });
   }
@@ -101,4 +108,23 @@ htmx.createEventSource = (address) => new LiveSource(address);
 // What a page asks for by itself is no use of the session: nobody may be there any more.
 document.addEventListener("htmx:configRequest", ({ detail }) => {
   if (detail.triggeringEvent?.type.startsWith("sse:")) detail.headers["X-Refresh"] = "1";
+});
+
+document.addEventListener("htmx:beforeSend", ({ detail }) => {
+  const name = detail.requestConfig.triggeringEvent?.type;
+  if (told.has(name)) toldBefore.set(detail.xhr, told.get(name));
+});
+
+// What is told while the answer is under way may not be in it. htmx would ask again for the element that the
+// answer has replaced; the one in its place asks.
+document.addEventListener("htmx:afterRequest", ({ detail }) => {
+  const name = detail.requestConfig.triggeringEvent?.type;
+  if (!toldBefore.has(detail.xhr) || toldBefore.get(detail.xhr) === told.get(name)) return;
+  const { id } = detail.requestConfig.elt;
+  setTimeout(() => {
+    const element = document.getElementById(id);
+    if (element === null) return;
+    htmx.process(element);
+    htmx.trigger(element, name);
+  });
 });
