@@ -18,6 +18,7 @@ from service.condition.record_times import ImpossibleTimeError, require_possible
 from service.condition.work import ConditionTask, ConditionWork
 from service.jobs.answers import Answers
 from service.jobs.limits import JobLimits
+from service.jobs.listening import JobListener
 from service.jobs.relay_time import TriggeredRecord, note_relay_time
 from service.jobs.task import Diagnosed, DiagnosisTask, Outcome, Rejected, Task
 from service.jobs.worker_pool import NoWorkersError, WorkerPool
@@ -35,6 +36,10 @@ from service.timing.periodic_worker import PeriodicWorker
 log: FilteringBoundLogger = structlog.get_logger(__name__)
 
 RENEWALS_A_LEASE = 3
+
+POLL_PERIOD_S = 0.2
+TOLD_POLL_PERIOD_S = 1.0
+"""Where the database tells of jobs, polls find what was queued while the connection was lost."""
 
 CONDITION_TIMEOUT_S = 60.0
 """Tasks for conditions end after a second; one that lasts so long hangs."""
@@ -60,12 +65,13 @@ class JobRunner:
         time_zones: Mapping[str, str] | None = None,
         conditions: ConditionWork | None = None,
         prepare_worker: Callable[[], None] = follow_service,
-        poll_period_s: float = 0.2,
+        poll_period_s: float | None = None,
         is_ending: Callable[[], bool] = lambda: False,
     ) -> None:
         """time_zones: of the clocks of relays that do not run in UTC, by motor (IANA names).
 
         conditions: what workers do that have nothing to diagnose. is_ending: workers are not needed.
+        poll_period_s: looks for jobs so often; by default seldom where the database tells of them.
         """
         self._repository = repository
         self._store = store
@@ -85,7 +91,10 @@ class JobRunner:
         self._conditions = conditions
         self._condition_results: deque[tuple[ConditionTask, Future[int]]] = deque()
         self._loading = limits.workers
+        if poll_period_s is None:
+            poll_period_s = TOLD_POLL_PERIOD_S if repository.tells_of_jobs else POLL_PERIOD_S
         self._worker = PeriodicWorker("the job runner", self._step, period_s=poll_period_s, at_once=True)
+        self._listener = JobListener(repository, self._worker.wake)
         self._answers = Answers(self._worker.wake)
         self.compute = self._answers.ask
 
@@ -95,9 +104,11 @@ class JobRunner:
         if self._conditions is not None:
             self._conditions.begin()
         self._worker.start()
+        self._listener.start()
 
     def stop(self) -> None:
         """Stop the workers; their jobs go back to the queue as if they had not been claimed."""
+        self._listener.stop()
         self._worker.stop()
         self._shut_down()
 

@@ -24,6 +24,7 @@ from service.storage.repository.history.start_reports import StartReportRows
 from service.storage.repository.history.starts import StartRows
 from service.storage.repository.history.supply import SupplyRows
 from service.storage.repository.history.thinned_trend import ThinnedTrendRows
+from service.storage.repository.jobs.notices import JobNoticeRows
 from service.storage.repository.jobs.queue import JobRows
 from service.storage.repository.jobs.runners import JobRunnerRows
 from service.storage.repository.load_profiles import LoadProfileRows
@@ -61,6 +62,7 @@ class Repository(
     RemoteRecordRows,
     JobRows,
     JobRunnerRows,
+    JobNoticeRows,
     MotorHealthRows,
     MotorVersionRows,
     SeenRecordRows,

@@ -1,18 +1,23 @@
 """Sessions that keep the number of rows in each state, in the transaction that changes them.
 
-Counting whole tables whenever the metrics are asked for would take longer every year.
+Counting whole tables whenever the metrics are asked for would take longer every year. PostgreSQL also tells
+those who wait for it that jobs were queued, once the transaction is kept.
 """
 
 from collections import Counter
 
-from sqlalchemy import event, update
+from sqlalchemy import event, func, select, update
 from sqlalchemy.orm import Session, UOWTransaction
 from sqlalchemy.orm.attributes import get_history
 
 from service.storage.models import JobRow, RecordingRequestRow, RecordingRow, StateCountRow
+from service.storage.states import JobState
 
 COUNTED = (RecordingRow, RecordingRequestRow, JobRow)
 _CHANGES = "changes of state counts"
+
+JOBS_QUEUED = "statorwatch_jobs_queued"
+"""The channel of PostgreSQL on which it is told that jobs were queued."""
 
 
 class CountingSession(Session):
@@ -53,3 +58,5 @@ def _write_changes(session: Session) -> None:
                 .where(StateCountRow.counted_table == table, StateCountRow.state == state)
                 .values(number=StateCountRow.number + change)
             )
+    if changes[JobRow.__tablename__, JobState.QUEUED] > 0 and session.get_bind().dialect.name == "postgresql":
+        session.execute(select(func.pg_notify(JOBS_QUEUED, "")))
