@@ -13,6 +13,7 @@ from service.background import (
     backups,
     housekeeping,
     joining,
+    long_records,
     orphaned_requests,
     retention,
     scheduling,
@@ -24,6 +25,7 @@ from service.background.audit_forwarding import AuditForwarding
 from service.background.backups import DailyBackup
 from service.background.housekeeping import Housekeeping
 from service.background.joining import SeriesJoiner
+from service.background.long_records import LongRecorder
 from service.background.orphaned_requests import OrphanedRequestEnder
 from service.background.retention import Retention
 from service.background.scheduling import Scheduler
@@ -49,6 +51,7 @@ class Periods:
     alarm_sources_s: float = alarm_sources.PERIOD_S
     backups_s: float = backups.PERIOD_S
     joining_s: float = joining.PERIOD_S
+    long_records_s: float = long_records.PERIOD_S
 
 
 PERIODS = Periods()
@@ -86,7 +89,19 @@ def background_workers(
         settings, repository, gateway_problem=gateway_problem, restart_delay_s=restart_delay_s
     )
     joiner = SeriesJoiner(repository, store, compute, time_zones=plant.time_zones())
+    long_recorder = LongRecorder(
+        plant.motors,
+        repository,
+        usual_days=settings.long_record_days,
+        usual_s=settings.long_record_s,
+        metering_period_s=settings.metering_period_s,
+    )
     workers = {
+        "long_records": PeriodicWorker(
+            "requests of long records",
+            lambda: long_recorder.request_due(time.time_ns()),
+            period_s=periods.long_records_s,
+        ),
         "joining": PeriodicWorker(
             "joining of recordings",
             lambda: joiner.join_ready(time.time_ns()),

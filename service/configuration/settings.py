@@ -103,6 +103,8 @@ class Settings(BaseSettings):
     record_timeout_s: float = Field(default=30.0, ge=0.01, le=3600)
     poll_period_s: float = Field(default=5.0, ge=0.01, le=SECONDS_PER_DAY)
     quarantine_s: float = Field(default=60.0, ge=0.1, le=SECONDS_PER_DAY)
+    long_record_days: float = Field(default=0.0, ge=0, le=365)
+    long_record_s: float = Field(default=10.0, ge=1, le=30)
     metering_period_s: float = Field(default=10.0, ge=0, le=SECONDS_PER_DAY)
     metering_sample_days: float = Field(default=1.0, ge=0.01, le=MOST_DAYS)
     metering_minute_days: float = Field(default=31.0, ge=0.01, le=MOST_DAYS)

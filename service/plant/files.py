@@ -226,7 +226,16 @@ def _unusual(motor: Motor, told: MotorsFile) -> Iterator[str]:
 
 def _plant_motor(one: Binding, entry: MotorEntry, motor: Motor) -> PlantMotor:
     description = one.motor_description if entry.description is None else entry.description
-    return PlantMotor(motor, description, one.site, one.relay, entry.schedule, entry.bus or one.bus)
+    return PlantMotor(
+        motor,
+        description,
+        one.site,
+        one.relay,
+        entry.schedule,
+        entry.bus or one.bus,
+        entry.long_record_days,
+        entry.long_record_s,
+    )
 
 
 def _in_motor(error: MotorFileError, entry: MotorEntry, told: MotorsFile) -> Problem:

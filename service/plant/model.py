@@ -58,6 +58,8 @@ class PlantMotor:
     relay: name of the relay that protects it.
     schedule: when it is recorded regularly; None where it is not.
     bus: name of the bus it is fed from; None where that is not known.
+    long_record_days, long_record_s: how often it is recorded for long [days], and how long [s]; None where
+    the settings decide.
     """
 
     motor: Motor
@@ -66,6 +68,8 @@ class PlantMotor:
     relay: str
     schedule: Schedule | None = None
     bus: str | None = None
+    long_record_days: float | None = None
+    long_record_s: float | None = None
 
     @property
     def name(self) -> str:

@@ -16,6 +16,9 @@ from service.plant.schedule import Schedule
 from service.plant.tables import PlantTable, is_text
 
 TABLES = ("motor", "relay", "bus")
+MOST_DAYS = 365.0
+LEAST_S, MOST_S = 1.0, 30.0
+"""Of long records: days from one to the next, and their length."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,6 +28,7 @@ class MotorEntry:
     data: the tables of its nameplate, parameters and the like.
     description: in words; None where the file has none.
     relay: name of its relay; None where it names none.
+    long_record_days, long_record_s: None where the settings decide.
     bus: the bus it names; None where it names none.
     is_sound: whether all of this could be read.
     keys: that the table may have beside those of its data.
@@ -37,6 +41,8 @@ class MotorEntry:
     schedule: Schedule | None
     overrides: Overrides
     bus: str | None
+    long_record_days: float | None
+    long_record_s: float | None
     is_sound: bool
     keys: tuple[str, ...]
 
@@ -165,6 +171,10 @@ def _motor_entry(table: PlantTable, name: str) -> MotorEntry:
     description = table.text("description", "what the motor drives, in words")
     schedule = table.schedule()
     bus = table.text("bus", "the name of a bus")
+    long_record_days = table.number(
+        "long_record_days", 0.0, MOST_DAYS, "days from one long record to the next"
+    )
+    long_record_s = table.number("long_record_s", LEAST_S, MOST_S, "length of a long record [s]")
     relay, overrides = _relay_of_motor(table)
     return MotorEntry(
         name,
@@ -174,6 +184,8 @@ def _motor_entry(table: PlantTable, name: str) -> MotorEntry:
         schedule=schedule,
         overrides=overrides,
         bus=bus,
+        long_record_days=long_record_days,
+        long_record_s=long_record_s,
         is_sound=table.is_sound,
         keys=table.keys,
     )

@@ -52,6 +52,15 @@ class PlantTable:
             self.refuse(key, expected, value)
         return value is True
 
+    def number(self, key: str, least: float, most: float, meaning: str) -> float | None:
+        """Return a number within bounds; None where the table has none."""
+        value = self.take(key)
+        if isinstance(value, int | float) and not isinstance(value, bool) and least <= value <= most:
+            return float(value)
+        if value is not None:
+            self.refuse(key, f"{meaning}, {least:g} to {most:g}", value)
+        return None
+
     def schedule(self) -> Schedule | None:
         """Return when something is recorded; None where the table does not say."""
         expression = self.take("schedule")

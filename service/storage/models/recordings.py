@@ -157,4 +157,11 @@ class RecordingRequestRow(Base):
         Index("ix_recording_requests_ied_state_requested_ns", "ied", "state", "requested_ns"),
         Index("ix_recording_requests_requested_ns_id", "requested_ns", "id"),
         Index("ix_recording_requests_motor_requested_ns_id", "motor", "requested_ns", "id"),
+        Index(
+            "ix_recording_requests_series",
+            "motor",
+            "requested_ns",
+            sqlite_where=text("seconds IS NOT NULL"),
+            postgresql_where=text("seconds IS NOT NULL"),
+        ),
     )

@@ -66,6 +66,7 @@ from service.storage.records.recordings import (
     RecordLength,
     RemoteRecord,
     Series,
+    SeriesHistory,
 )
 from service.storage.records.relays import (
     ClockReading,
@@ -159,6 +160,7 @@ __all__ = [
     "RotorEntry",
     "Sample",
     "Series",
+    "SeriesHistory",
     "SiteEntry",
     "StartEntry",
     "SupplyEntry",

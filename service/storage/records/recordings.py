@@ -112,6 +112,18 @@ class Series:
 
 
 @dataclass(frozen=True, slots=True)
+class SeriesHistory:
+    """When series of a motor were asked for [ns UTC]; None where none was.
+
+    tried_ns: the latest.  joined_ns: the latest that was joined.  failed: how many came after that one.
+    """
+
+    tried_ns: int | None
+    joined_ns: int | None
+    failed: int
+
+
+@dataclass(frozen=True, slots=True)
 class RecordingFile:
     name: str
     size_bytes: int

@@ -16,7 +16,7 @@ from service.configuration.settings import Settings
 from service.plant import Schedule
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
-from service.storage.records import RecordingRequest, Series
+from service.storage.records import RecordingRequest, Series, SeriesHistory
 from service.waveforms.computing import compute_here
 from testing.service.plants import two_motor_plant
 from testing.waiting import eventually
@@ -34,6 +34,7 @@ OFTEN = Periods(
     alarm_sources_s=0.01,
     backups_s=0.01,
     joining_s=0.01,
+    long_records_s=0.01,
 )
 PARTS = (
     "schedules",
@@ -44,6 +45,7 @@ PARTS = (
     "alarm_sources",
     "backups",
     "joining",
+    "long_records",
 )
 
 
@@ -52,9 +54,11 @@ class FaultyRepository(Repository):
 
     part = ""
 
-    def schedule_recording(self, motor: str, *, due_ns: int, now_ns: int) -> RecordingRequest | None:
+    def schedule_recording(
+        self, motor: str, *, due_ns: int, now_ns: int, seconds: float | None = None
+    ) -> RecordingRequest | None:
         self._fail_for("schedules")
-        return super().schedule_recording(motor, due_ns=due_ns, now_ns=now_ns)
+        return super().schedule_recording(motor, due_ns=due_ns, now_ns=now_ns, seconds=seconds)
 
     def average_measurements(self, *, now_ns: int) -> None:
         self._fail_for("housekeeping")
@@ -84,6 +88,10 @@ class FaultyRepository(Repository):
         self._fail_for("joining")
         return super().series_to_join(now_ns=now_ns)
 
+    def series_history(self, motor: str) -> SeriesHistory:
+        self._fail_for("long_records")
+        return super().series_history(motor)
+
     def _fail_for(self, part: str) -> None:
         if part == self.part:
             raise RuntimeError("a bug")
@@ -99,7 +107,7 @@ class AlwaysDue(Schedule):
 @contextmanager
 def serving_workers(repository: Repository, store: RecordingStore, directory: Path) -> Iterator[httpx.Client]:
     backup = {"directory": directory / "backups"}
-    settings = Settings.model_validate({"data_directory": directory, "backup": backup})
+    settings = Settings.model_validate({"data_directory": directory, "backup": backup, "long_record_days": 7})
     plant = two_motor_plant()
     often = tuple(replace(motor, schedule=AlwaysDue("* * * * *")) for motor in plant.motors)
     workers = background_workers(

@@ -46,9 +46,23 @@ def test_the_demo_plant(motors: Path) -> None:
     assert relay.metering_data_set == "A2_SEL710CFG/LLN0.DSet02"
 
 
+def test_a_motor_may_have_long_records_of_its_own(motors: Path) -> None:
+    told = 'name = "FAN-A2"\nlong_record_days = 7\nlong_record_s = 20'
+    motors.write_text(motors.read_text().replace('name = "FAN-A2"', told))
+    plant = read_plant(settings(motors))
+    fan, pump = plant.motor("FAN-A2"), plant.motor("PUMP-A1")
+    assert (fan.long_record_days, fan.long_record_s) == (7.0, 20.0)
+    assert (pump.long_record_days, pump.long_record_s) == (None, None)
+
+
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
+        (
+            'name = "FAN-A2"',
+            'name = "FAN-A2"\nlong_record_s = 60',
+            "motor FAN-A2: long_record_s: expected length of a long record [s], 1 to 30, found 60",
+        ),
         ('name = "FAN-A2"', 'name = "FAN-A3"', "motor FAN-A2: expected its [[motor]] table"),
         (
             'name = "FAN-A2"',

@@ -82,13 +82,16 @@ class RecordingRequestRows(Sessions):
             )
             return made
 
-    def schedule_recording(self, motor: str, *, due_ns: int, now_ns: int) -> RecordingRequest | None:
+    def schedule_recording(
+        self, motor: str, *, due_ns: int, now_ns: int, seconds: float | None = None
+    ) -> RecordingRequest | None:
         """Request what a motor's schedule asks for at `due_ns`; asked again, it gives the same request.
 
+        seconds: request a series that makes up so much time, which is due apart from the schedule.
         None, and no new request, while an earlier one waits for its record: triggers must not pile up at a
         relay that makes none. Nor is there one for a motor that left the plant. Raises NotFoundError.
         """
-        key = f"schedule {due_ns}"
+        key = f"schedule {due_ns}" if seconds is None else f"long record {due_ns}"
         with self._write() as session:
             where = found(session, MotorRow, motor, "motor", lock=True)
             earlier = _of_key(session, motor, RecordingRequestOrigin.SCHEDULE, key)
@@ -99,7 +102,7 @@ class RecordingRequestRows(Sessions):
             )
             if not where.in_service or only(session, is_open) is not None:
                 return None
-            return _request(session, where, RecordingRequestOrigin.SCHEDULE, key, now_ns)
+            return _request(session, where, RecordingRequestOrigin.SCHEDULE, key, now_ns, seconds=seconds)
 
     def skip_recording(self, motor: str, reason: str, *, due_ns: int, now_ns: int) -> bool:
         """Note that what a motor's schedule asks for at `due_ns` is not recorded, since the motor stands.

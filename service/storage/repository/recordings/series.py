@@ -7,7 +7,7 @@ from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
 from core.units import NANOSECONDS_PER_DAY, NANOSECONDS_PER_SECOND
 from service.recording_store.store import StoredRecording
 from service.storage.models import MotorRow, RecordingRequestRow, RecordingRow
-from service.storage.records import Series
+from service.storage.records import Series, SeriesHistory
 from service.storage.repository.recordings.folders import discard_folder, require_folder
 from service.storage.repository.recordings.recordings import brought, fill, new_job, stored_before
 from service.storage.repository.recordings.requests import KIND
@@ -17,6 +17,10 @@ from service.storage.texts import storable
 
 OLDEST_NS = NANOSECONDS_PER_DAY
 """Nobody waits any longer for a series."""
+LONGEST_SERIES_NS = 3600 * NANOSECONDS_PER_SECOND
+"""A series that is not joined by then is no longer waited for with others."""
+MOST_TRIED = 20
+"""So many series of a motor are looked back at."""
 LOOKED_AT = 100
 """Recordings among which one with a length is looked for."""
 BESIDE_NS = 2 * NANOSECONDS_PER_SECOND
@@ -75,6 +79,35 @@ class SeriesRows(Sessions):
         with self._write() as session:
             request = found(session, RecordingRequestRow, series.request_id, KIND, lock=True)
             request.joined_remark = storable(remark)
+
+    def is_series_under_way(self, *, now_ns: int) -> bool:
+        """Return whether a series was asked for lately and is neither joined nor given up."""
+        query = select(RecordingRequestRow.id).where(
+            RecordingRequestRow.requested_ns >= now_ns - LONGEST_SERIES_NS,
+            RecordingRequestRow.seconds.is_not(None),
+            RecordingRequestRow.state != RecordingRequestState.FAILED,
+            RecordingRequestRow.joined_recording_id.is_(None),
+            RecordingRequestRow.joined_remark.is_(None),
+        )
+        with self._read() as session:
+            return session.scalars(query.limit(1)).first() is not None
+
+    def series_history(self, motor: str) -> SeriesHistory:
+        """Return when a motor was last recorded for long, and what was tried in vain since."""
+        query = (
+            select(RecordingRequestRow.requested_ns, RecordingRequestRow.joined_recording_id)
+            .where(RecordingRequestRow.motor == motor, RecordingRequestRow.seconds.is_not(None))
+            .order_by(RecordingRequestRow.requested_ns.desc())
+            .limit(MOST_TRIED)
+        )
+        with self._read() as session:
+            latest = session.execute(query).all()
+        failed = 0
+        for requested_ns, joined_recording_id in latest:
+            if joined_recording_id is not None:
+                return SeriesHistory(latest[0].requested_ns, requested_ns, failed)
+            failed += 1
+        return SeriesHistory(latest[0].requested_ns if latest else None, None, failed)
 
     def record_length(self, motor: str) -> tuple[float, float] | None:
         """Return length and pre-trigger time [s] of a motor's latest record that its relay made by a trigger.

@@ -11,11 +11,19 @@ import pytest
 from core.recordings import read
 from ied_sim.relay.event_recorder import RecorderSettings
 from service.background.joining import SeriesJoiner
+from service.background.long_records import LongRecorder
 from service.collector.triggers.series import NoSeriesError, SeriesUnderWay, rhythm_of
 from service.jobs.task import Diagnosed, DiagnosisTask
 from service.jobs.worker import diagnose_recording
-from service.storage.records import RecordingEntry, Sample
-from service.storage.states import LinkState, RecordingRequestState, RecordingSource, RecordingState
+from service.plant import PlantMotor
+from service.storage.records import RecordingEntry, RecordingRequest, Sample
+from service.storage.states import (
+    LinkState,
+    RecordingRequestOrigin,
+    RecordingRequestState,
+    RecordingSource,
+    RecordingState,
+)
 from service.waveforms.computing import compute_here
 from testing.relays.simulated import scenario_of, simulated
 from testing.service.plants import motor
@@ -207,6 +215,38 @@ def test_between_the_triggers_of_a_series_the_relay_is_measured_and_records_are_
     assert first.fetched_ns < ended_ns
     meanwhile = [sample for sample in samples if begun_ns < sample.time_ns < ended_ns]
     assert len(meanwhile) >= LONGER_TRIGGERS, "at least one sample from trigger to trigger"
+
+
+def test_a_long_record_is_made_by_its_interval_once_motor_and_link_are_steady(
+    ready: Bench, tmp_path: Path
+) -> None:
+    scenario = scenario_of("sel-710-ed2", recorder=RECORDER)
+    due = PlantMotor(motor(MOTOR), "pump", "FACTORY_A", ready.relay.name, None, None, 7.0, WANTED_S)
+    with simulated(tmp_path / "relays", scenario) as served:
+        here = of(ready, served, "EVENTS").with_settings(metering_period_s=0.2, record_timeout_s=20.0)
+        repository = here.repository
+        long_records = LongRecorder(
+            [due], repository, usual_days=0.0, usual_s=10.0, metering_period_s=0.2, steady_s=1.0
+        )
+        with here.session(lambda sample: repository.add_samples([sample])) as session:
+            once = ask(here, None)
+            session.wake()
+            assert eventually(lambda: here.requested(once).state is RecordingRequestState.FETCHED, 20)
+            diagnose_all(here)
+
+            def asked() -> list[RecordingRequest]:
+                long_records.request_due(time.time_ns())
+                session.wake()
+                return [one for one in repository.recording_requests(limit=10).items if one.seconds]
+
+            assert eventually(lambda: asked() != [], 20)
+            assert eventually(lambda: fetched(here, 1 + TRIGGERS), 40)
+            (wanted,) = asked()
+    diagnose_all(here)
+    joiner(here).join_ready(time.time_ns())
+    request = here.requested(wanted.id)
+    assert (request.joined_remark, request.origin) == (None, RecordingRequestOrigin.SCHEDULE)
+    assert request.joined_recording_id is not None
 
 
 def test_a_series_waits_for_its_records_but_not_for_ever() -> None:
