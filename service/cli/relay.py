@@ -1,10 +1,11 @@
 """`mcc relay`: what a running service uses of one relay, and where that differs from its SCL."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 from rich.text import Text
 
 from core.error_words import one_line
+from core.quantity_text import plain
 from service.cli.output import failing_clearly, print_document, results
 from service.client.rest_client import Document, ServiceClient, ServiceError, segment
 from service.client.tables import FittedTable
@@ -45,6 +46,7 @@ def _lines(ied: Document) -> list[tuple[str, str]]:
         lines.extend(("remark", str(remark)) for remark in used["remarks"])
     else:
         lines.append(("used", NOT_VISITED))
+    lines.extend(_length_lines(ied["report_length"]))
     lines.extend(
         (
             f"other than its SCL: {each['kind']}",
@@ -57,6 +59,17 @@ def _lines(ied: Document) -> list[tuple[str, str]]:
     )
     lines.extend(("alarm", f"{each['kind']}: {each['reason']}") for each in _items(ied, "alarms"))
     return lines
+
+
+def _length_lines(length: object) -> Iterator[tuple[str, str]]:
+    """Yield how long its records are, and what to set for longer ones."""
+    if not isinstance(length, Mapping):
+        return
+    duration_s, before_s = plain(length["duration_s"]), plain(length["pre_trigger_s"])
+    cycles = f"{length['cycles']:.0f} cycles"
+    yield "records last", f"{duration_s} s ({cycles}), {before_s} s of it before the trigger"
+    for advice in length["advice"]:
+        yield "for longer records", str(advice)
 
 
 def _items(document: Document, name: str) -> list[Mapping[str, object]]:

@@ -13,6 +13,7 @@ from service.api.context import Context
 from service.api.document import Name
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
+from service.api.relays.report_lengths import report_length_of
 from service.api.relays.schemas import (
     Acquisition,
     Difference,
@@ -23,6 +24,7 @@ from service.api.relays.schemas import (
     LinkChange,
     LinkFigures,
     Quarantine,
+    ReportLength,
 )
 from service.storage.records import RelayFindings
 
@@ -46,6 +48,7 @@ def get_ied(context: Context, name: Name) -> IedDetails:
     changes = repository.link_changes(name, limit=LATEST_CHANGES)
     quarantine = repository.quarantine(name)
     findings = repository.relay_findings(name)
+    length = report_length_of(context, repository.relay_overview(name))
     return IedDetails(
         **dict(ied),
         gateway=repository.gateway_of(name),
@@ -54,6 +57,7 @@ def get_ied(context: Context, name: Name) -> IedDetails:
         quarantine=None if quarantine is None else Quarantine.model_validate(quarantine),
         alarms=[Alarm.model_validate(alarm) for alarm in repository.standing_alarms(name)],
         acquisition=_acquisition(findings),
+        report_length=None if length is None else ReportLength.model_validate(length),
         differences=[] if findings is None else [Difference.model_validate(d) for d in findings.differences],
         ignored_files=[]
         if findings is None

@@ -126,11 +126,25 @@ class IgnoredFile(Document):
     reason: str
 
 
+class ReportLength(Document):
+    """How long a relay's event reports are, by its latest record, and how much of it is before the trigger.
+
+    cycles: of the motor's rated frequency. longest_cycles: what its family allows; null where that is not
+    known. advice: what to set in the relay for longer records, and for series of them that are joined.
+    """
+
+    duration_s: float
+    pre_trigger_s: float
+    cycles: float
+    longest_cycles: int | None
+    advice: Listed[str]
+
+
 class IedDetails(Ied):
     """A relay with the figures of its link, its latest link changes and the alarms that stand.
 
     gateway: id of the one that visits it, null while none does. acquisition: null before the first visit.
-    quarantine: null where nothing is held against it.
+    quarantine: null where nothing is held against it. report_length: null before a record of it was read.
     differences: from its SCL. ignored_files: the first hundred of `ignored_files_in_all`.
     """
 
@@ -140,6 +154,7 @@ class IedDetails(Ied):
     quarantine: Quarantine | None
     alarms: Listed[Alarm]
     acquisition: Acquisition | None
+    report_length: ReportLength | None
     differences: Listed[Difference]
     ignored_files: Listed[IgnoredFile]
     ignored_files_in_all: int

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from math import ceil, inf
 from typing import Final
 
+from service.plant.report_length import LEAST_PRE_TRIGGER_S
+
 PRE_TRIGGER_USED: Final = 0.5
 """Share of the pre-trigger time between the end of a record and the next trigger.
 
 The trigger may come so much too early, and the rest of the time too late, before records fail to overlap."""
-LEAST_PRE_TRIGGER_S: Final = 0.1
-"""With less the next record cannot be triggered in time over a network, and share a cycle or more."""
 MOST_TRIGGERS: Final = 100
 
 

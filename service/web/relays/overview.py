@@ -5,8 +5,11 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from core.units import NANOSECONDS_PER_DAY, NANOSECONDS_PER_SECOND
+from service.api.context import ApiContext
 from service.api.pages import decode, encode
+from service.api.relays.report_lengths import report_length_of
 from service.configuration.settings import Settings
+from service.plant.report_length import ReportLength
 from service.storage import Repository
 from service.storage.records import Alarm, GatewayEntry, IedEntry, LinkChange, LinkFigures, RelayFindings
 from service.storage.records.overviews import RelayOverview
@@ -143,7 +146,7 @@ class RelayList:
 class RelayDetails:
     """What the page of one relay shows. is_held: it is set aside now.
 
-    record_length: of its latest record, and the part before the trigger [s].
+    report_length: by its latest record; None where none was read.
     """
 
     line: RelayLine
@@ -159,7 +162,7 @@ class RelayDetails:
     findings: RelayFindings | None
     certificates: Sequence[CertificateEnd]
     used: Sequence[tuple[str, str | None]] = field(default=())
-    record_length: tuple[float, float] | None = None
+    report_length: ReportLength | None = None
 
     @property
     def entry(self) -> IedEntry:
@@ -198,16 +201,16 @@ def relay_list(repository: Repository, settings: Settings, choice: RelayChoice) 
 
 
 def relay_details(
-    repository: Repository, settings: Settings, name: str, *, days: int, cursor: str | None, now_ns: int
+    context: ApiContext, name: str, *, days: int, cursor: str | None, now_ns: int
 ) -> RelayDetails:
     """Read what the page of one relay shows. Raises NotFoundError, ProblemError for a cursor that is none."""
+    repository, settings = context.repository, context.settings
     overview = repository.relay_overview(name)
     changes = repository.link_changes(name, limit=MOST_CHANGES, after=decode(cursor, int, str))
     from_ns = now_ns - days * NANOSECONDS_PER_DAY
     history = link_history(repository.link_history(name, from_ns=from_ns), days=days, now_ns=now_ns)
     findings = repository.relay_findings(name)
     here = address("/relays", name)
-    lengths = [repository.record_length(motor) for motor in overview.motors]
     return RelayDetails(
         line=_line(overview, settings),
         in_service=repository.is_in_service(name),
@@ -226,7 +229,7 @@ def relay_details(
         used=()
         if findings is None
         else [(words, _text(findings.acquisition.get(key))) for key, words in USED],
-        record_length=next((length for length in lengths if length is not None), None),
+        report_length=report_length_of(context, overview),
     )
 
 

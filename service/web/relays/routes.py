@@ -55,9 +55,7 @@ def show_relay(
 ) -> Response:
     """Show one relay."""
     live = live_address(view.request, "relays")
-    details = relay_details(
-        view.context.repository, view.context.settings, name, days=days, cursor=cursor, now_ns=view.now_ns
-    )
+    details = relay_details(view.context, name, days=days, cursor=cursor, now_ns=view.now_ns)
     return view.page(
         "relays/relay.html",
         live=live,
