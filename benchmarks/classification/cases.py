@@ -1,12 +1,12 @@
 """Simulated records with one cause or two of sizes drawn at random, and how each answer compares with it."""
 
 from dataclasses import dataclass
-from enum import StrEnum
 from itertools import combinations
 from time import perf_counter
 
 import numpy as np
 
+from benchmarks.classification.outcomes import Outcome, outcome_of
 from core.classification.causes import PRIORS, Cause, Causes
 from core.classification.record import classify_record
 from core.condition.measuring.observing import examine
@@ -18,17 +18,6 @@ MOTORS = {"small": REFERENCE, "medium": MEDIUM, "large": LARGE}
 ONE_RECORD = tuple(cause for cause in PRIORS if cause is not Cause.LOAD)
 """What one record may tell: all causes but a load that changed."""
 PAIRS = tuple(frozenset(two) for two in combinations(ONE_RECORD, 2))
-
-
-class Outcome(StrEnum):
-    """How an answer compares with the truth."""
-
-    RIGHT = "right"
-    AMONG = "right among those not told apart"
-    PARTLY = "a part of it, and nothing wrong"
-    MISSED = "called healthy"
-    UNTOLD = "nothing told"
-    WRONG = "wrong"
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,32 +44,18 @@ class Result:
 def answered(subject: Subject) -> Result:
     """Simulate a record, examine it and compare the answer."""
     case = CauseCase(
-        MOTORS[subject.motor], subject.causes, subject.load_level, subject.seed, _sizes(subject.seed)
+        MOTORS[subject.motor], subject.causes, subject.load_level, subject.seed, drawn_sizes(subject.seed)
     )
     known, record = case.known(), case.record()
     examined = examine(record, known)
     begun = perf_counter()
     answer = classify_record(examined, known)
     seconds = perf_counter() - begun
-    open_ones = [pair.other.causes for pair in answer.not_told_apart]
-    likeliest, truth = answer.answer.causes, subject.causes
-    if answer.is_told:
-        if likeliest == truth:
-            outcome = Outcome.RIGHT
-        elif not likeliest:
-            outcome = Outcome.MISSED
-        else:
-            outcome = Outcome.PARTLY if likeliest < truth else Outcome.WRONG
-    elif truth in (likeliest, *open_ones) and open_ones:
-        outcome = Outcome.AMONG
-    elif any(one and one <= truth for one in (likeliest, *open_ones)):
-        outcome = Outcome.PARTLY
-    else:
-        outcome = Outcome.WRONG if any((likeliest, *open_ones)) else Outcome.UNTOLD
-    return Result(subject, outcome, likeliest, answer.is_told, seconds)
+    outcome = outcome_of(answer, subject.causes)
+    return Result(subject, outcome, answer.answer.causes, answer.is_told, seconds)
 
 
-def _sizes(seed: int) -> Sizes:
+def drawn_sizes(seed: int) -> Sizes:
     """Draw how large the causes are: what a plant would want to know of, small ones among them."""
     random = np.random.default_rng([seed, 3])
     sign = random.choice([-1.0, 1.0], 3)

@@ -6,21 +6,17 @@ from concurrent.futures import Executor
 from pathlib import Path
 from statistics import median
 
-import matplotlib as mpl
-import numpy as np
-from matplotlib.figure import Figure
-
-from benchmarks.classification.cases import MOTORS, ONE_RECORD, PAIRS, Outcome, Result, Subject, answered
+from benchmarks.classification.cases import MOTORS, ONE_RECORD, PAIRS, Result, Subject, answered
+from benchmarks.classification.outcomes import Outcome
+from benchmarks.classification.picture import Answer, draw_matrix, in_words
 from benchmarks.reporting import Section, rate_text, spread, table
-from core.classification.causes import IN_WORDS, NOTHING, Cause, Causes
+from core.classification.causes import IN_WORDS, NOTHING, Causes
 
 PICTURE = Path("docs/evidence/images/classification/confusion.svg")
 LOADS, PAIR_LOADS = (0.25, 0.5, 0.75, 1.0), (0.5, 0.9)
 FIRST_SEED, PAIR_SEED, HEALTHY_SEED = 5_000, 6_000, 7_000
 HEALTHY_EACH, SINGLE_EACH = 10, 2
-OPEN, TWO = "not told apart", "two causes"
-mpl.use("Agg")
-mpl.rcParams["svg.hashsalt"] = "classification"
+TRUTHS: tuple[Causes, ...] = (NOTHING, *(frozenset({cause}) for cause in ONE_RECORD))
 
 
 def sections(pool: Executor, *, quick: bool) -> list[Section]:
@@ -49,8 +45,8 @@ def sections(pool: Executor, *, quick: bool) -> list[Section]:
     single_results = list(spread(answered, [*healthy, *singles], "single causes", pool))
     pair_results = list(spread(answered, pairs, "pairs", pool))
     if not quick:
-        PICTURE.parent.mkdir(parents=True, exist_ok=True)
-        _draw(single_results)
+        answers = [Answer(one.subject.causes, one.likeliest, one.told) for one in single_results]
+        draw_matrix(PICTURE, TRUTHS, answers)
     return [_single(single_results), _pairs(pair_results)]
 
 
@@ -60,10 +56,10 @@ def _number(motor: str, load: float, k: int) -> int:
 
 def _single(results: Sequence[Result]) -> Section:
     rows = []
-    for causes in _truths():
+    for causes in TRUTHS:
         own = [one for one in results if one.subject.causes == causes]
         counts = Counter(one.outcome for one in own)
-        rows.append([_name(causes), str(len(own)), *(str(counts[outcome]) for outcome in Outcome)])
+        rows.append([in_words(causes), str(len(own)), *(str(counts[outcome]) for outcome in Outcome)])
     healthy = [one for one in results if not one.subject.causes]
     false = sum(one.told and bool(one.likeliest) for one in healthy)
     left_open = sum(one.outcome is Outcome.AMONG for one in healthy)
@@ -121,38 +117,3 @@ def _figures(results: Sequence[Result]) -> list[str]:
         f"- {outcome}: {rate_text(sum(one.outcome is outcome for one in results), count)}."
         for outcome in Outcome
     ]
-
-
-def _truths() -> list[Causes]:
-    return [NOTHING, *(frozenset({cause}) for cause in ONE_RECORD)]
-
-
-def _name(causes: Causes) -> str:
-    return " with ".join(IN_WORDS[one] for one in sorted(causes)) or IN_WORDS[Cause.HEALTHY]
-
-
-def _draw(results: Sequence[Result]) -> None:
-    truths = _truths()
-    columns = [*map(_name, truths), TWO, OPEN]
-    matrix = np.zeros((len(truths), len(columns)))
-    for row, causes in enumerate(truths):
-        own = [one for one in results if one.subject.causes == causes]
-        for one in own:
-            if not one.told:
-                column = columns.index(OPEN)
-            elif len(one.likeliest) > 1:
-                column = columns.index(TWO)
-            else:
-                column = truths.index(one.likeliest)
-            matrix[row, column] += 100.0 / len(own)
-    figure = Figure(figsize=(9.0, 6.0), layout="constrained")
-    axes = figure.subplots()
-    axes.imshow(matrix, cmap="Blues", vmin=0.0, vmax=100.0)
-    axes.set_xticks(range(len(columns)), columns, rotation=45.0, ha="right")
-    axes.set_yticks(range(len(truths)), [_name(one) for one in truths])
-    axes.set_xlabel("answer")
-    axes.set_ylabel("truth")
-    for row, column in np.argwhere(matrix >= 0.5).tolist():
-        share = matrix[row, column]
-        axes.text(column, row, f"{share:.0f}", ha="center", va="center", color="w" if share > 50.0 else "k")
-    figure.savefig(PICTURE, metadata={"Date": None})

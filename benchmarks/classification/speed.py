@@ -11,8 +11,9 @@ from time import perf_counter
 import numpy as np
 
 from benchmarks.classification.cases import MOTORS, ONE_RECORD
+from benchmarks.classification.picture import in_words
 from benchmarks.reporting import Section, mark, table
-from core.classification.causes import IN_WORDS, NOTHING, Cause, Causes
+from core.classification.causes import NOTHING, Causes
 from core.classification.record import classify_record
 from core.condition.measuring.observing import examine
 from core.machines.parameters import Motor
@@ -45,8 +46,7 @@ def sections(pool: Executor, *, quick: bool) -> list[Section]:
                 median(whole_s),
                 max(whole_s),
             ]
-            truth = " with ".join(IN_WORDS[one] for one in causes) or IN_WORDS[Cause.HEALTHY]
-            rows.append([f"{name}, {truth}", *(f"{1e3 * one:.0f} ms" for one in figures_s)])
+            rows.append([f"{name}, {in_words(causes)}", *(f"{1e3 * one:.0f} ms" for one in figures_s)])
     lines = (
         f"Records of {DURATION_S:g} s at {RATE_HZ / 1e3:g} kHz with six channels, as binary COMTRADE: read, "
         "checked, diagnosed, with the condition's observation, rotor, supply, air gap and swings, and their "

@@ -38,6 +38,10 @@ NAMED, CANDIDATE, SOUND = 8.0, 6.0, -3.0
 several candidates; and against what it would have seen."""
 FROM_STARTS, FROM_TRACKING = 5.0, 4.0
 """Evidence of a cause of other starts, and of a drift of a parameter: each is beyond its 95 % interval."""
+MOST_RECORDS: Final = 5
+"""Latest records whose answers take part."""
+MOST_LOADS: Final = 60
+"""Latest records whose loads are compared."""
 FEWEST_LOADS, LATEST_LOADS = 8, 3
 """Earlier records that a load is compared with at least, and latest ones that have to agree."""
 LOAD_SCATTER, LOAD_CHANGE = 0.03, 0.3

@@ -1,12 +1,15 @@
 """What a start shows with the help of the motor's model: torque, load, parameters, and the rotor's cage."""
 
 from dataclasses import asdict, dataclass
+from math import hypot
+from typing import Final
 
 from core.machines.parameters import MachineParameters
 from core.rotor.start_finding import StartSideband
 from core.starts.figures import MotorStart
 
 Interval = tuple[float, float]
+NORMAL_95: Final = 1.96
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,6 +93,18 @@ class StartParameters:
     def machine(self) -> MachineParameters:
         """The parameters as the models take them."""
         return MachineParameters(**self.values)
+
+    @property
+    def rotor_over_stator(self) -> tuple[float, float] | None:
+        """R_r' over R_s, and the standard deviation of its logarithm; None where not both are told."""
+        values, spreads = [], []
+        for name in ("rotor_resistance_ohm", "stator_resistance_ohm"):
+            if name not in self.ci95 or not self.values[name] > 0.0:
+                return None
+            low, high = self.ci95[name]
+            values.append(self.values[name])
+            spreads.append((high - low) / (2.0 * NORMAL_95 * self.values[name]))
+        return values[0] / values[1], hypot(*spreads)
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ from core.condition.bus.bus_records import BusRecords
 from core.condition.bus.neighbours import Neighbour, StandingEstimate
 from core.condition.errors import ObservationError
 from core.condition.following.follower import Follower
-from core.condition.kinds import Kind, State
+from core.condition.kinds import moves_impedance
 from core.condition.rules import RULES
 from core.condition.verdict.condition import Condition, condition_of
 from core.condition.verdict.verdict import Verdict, verdict_of
@@ -35,11 +35,6 @@ log = structlog.get_logger(__name__)
 
 Said = dict[str, Any]
 """The fields of ConditionFigures."""
-
-OTHER_CAUSES = frozenset(
-    {Kind.SHORTED_TURNS, Kind.CONNECTION, Kind.VOLTAGE_CHANNEL, Kind.CURRENT_CHANNEL, Kind.UNCLEAR}
-)
-"""What moves the impedance with no parameter of the motor: records that show it do not tell of parameters."""
 
 TOLD_APART = ("state", "kind", "phase", "candidates")
 """Where one of these is another than before, the history has it."""
@@ -146,7 +141,7 @@ class _Folding:
             log.warning("record left out of the condition", recording=one.recording_id, error=str(error))
             return
         said = self._say()
-        if not _tells_of_another_cause(said):
+        if not moves_impedance(said["state"], said["kind"], said["candidates"]):
             self._tracking.follow(one)
         self._points.append(
             ConditionPoint(recording_id=one.recording_id, time_ns=observation.time_ns, **said)
@@ -216,13 +211,6 @@ def _differs(before: Said, said: Said) -> bool:
     return any(
         set(before[name]) != set(said[name]) if name == "candidates" else before[name] != said[name]
         for name in TOLD_APART
-    )
-
-
-def _tells_of_another_cause(said: Said) -> bool:
-    """Return whether something has changed that moves the impedance with no parameter of the motor."""
-    return said["state"] in (State.WATCH, State.FAULT) and (
-        said["kind"] in OTHER_CAUSES or not OTHER_CAUSES.isdisjoint(said["candidates"])
     )
 
 

@@ -6,7 +6,7 @@ from math import pi, sqrt
 import numpy as np
 
 from core.classification.causes import Cause, Causes
-from core.machines.parameters import Motor
+from core.machines.parameters import Motor, Nameplate
 from core.recordings import Recording
 from ied_sim.motor.eccentricity import Eccentricity
 from ied_sim.motor.fault import FaultCourse
@@ -51,11 +51,43 @@ class Sizes:
 
 
 @dataclass(frozen=True, slots=True)
+class Surroundings:
+    """What a motor's records have besides: its supply, and the errors of its channels.
+
+    gain_errors: of the six channels.  noise: over rated values, rms.
+    """
+
+    voltage_V: float
+    frequency_hz: float
+    unbalance: complex
+    harmonics: tuple[Harmonic, ...]
+    gain_errors: tuple[float, ...]
+    noise: float
+
+    @classmethod
+    def drawn(cls, random: np.random.Generator, nameplate: Nameplate) -> "Surroundings":
+        """Draw them.
+
+        A voltage off by up to 3 %, 0.3 % of V2/V1, harmonics, channels anywhere within their class of +-1 %
+        and noise of 0.1 to 0.5 % of rated.
+        """
+        return cls(
+            unbalance=complex(0.003 * np.exp(2j * pi * random.uniform())),
+            voltage_V=nameplate.rated_voltage_V * random.uniform(0.97, 1.03),
+            frequency_hz=nameplate.rated_frequency_Hz + random.uniform(-0.05, 0.05),
+            harmonics=tuple(
+                Harmonic(order, random.uniform(0.0, 0.02), random.uniform(0.0, 2.0 * pi)) for order in (5, 7)
+            ),
+            gain_errors=tuple(random.uniform(-0.01, 0.01, 6).tolist()),
+            noise=random.uniform(0.001, 0.005),
+        )
+
+
+@dataclass(frozen=True, slots=True)
 class CauseCase:
     """A motor in steady running with causes; `nuisances` draws what every record has besides.
 
-    Those are a voltage off by up to 3 %, 0.3 % of V2/V1, harmonics, noise of 0.1 to 0.5 % of rated, channels
-    anywhere within their class of +-1 %, and the motor's parameters within +-5 %.
+    Those are its `Surroundings`, and the motor's parameters within +-5 %.
     """
 
     motor: Motor
@@ -97,46 +129,58 @@ class CauseCase:
 
     def plant(self, random: np.random.Generator) -> MotorPlant:
         """Return the simulated motor."""
-        sizes, causes, nameplate = self.sizes, self.causes, self.motor.nameplate
-        unbalance = 0.003 * np.exp(2j * pi * random.uniform())
-        if Cause.SUPPLY in causes:
-            unbalance = sizes.unbalance
-        supply = Supply(
-            nameplate.rated_voltage_V * random.uniform(0.97, 1.03),
-            nameplate.rated_frequency_Hz + random.uniform(-0.05, 0.05),
-            unbalance=abs(unbalance),
-            unbalance_angle_rad=float(np.angle(unbalance)),
-            harmonics=tuple(
-                Harmonic(order, random.uniform(0.0, 0.02), random.uniform(0.0, 2.0 * pi)) for order in (5, 7)
-            ),
+        surroundings = Surroundings.drawn(random, self.motor.nameplate)
+        return plant_with(
+            self.causes, self.sizes, self.motor, self.load_level, surroundings, seed=self.nuisances
         )
-        swings = Cause.PULSATION in causes
-        pulsations = (Pulsation(sizes.pulsation, frequency_Hz=sizes.pulsation_hz),) if swings else ()
-        errors = random.uniform(-0.01, 0.01, 6)
-        if Cause.CURRENT_CHANNEL in causes:
-            errors[sizes.current_channel] += sizes.current_error
-        if Cause.VOLTAGE_CHANNEL in causes:
-            errors[3 + sizes.voltage_channel] += sizes.voltage_error
-        plant = MotorPlant(
-            self.motor,
-            supply,
-            Load(self.load_level, pulsations=pulsations),
-            Sensors(
-                10.0 * rated_current(self.motor),
-                2.0 * nameplate.rated_voltage_V,
-                gain_errors=tuple(errors.tolist()),
-                noise=random.uniform(0.001, 0.005),
-            ),
-            seed=self.nuisances,
-        )
-        if Cause.SHORTED_TURNS in causes:
-            plant = replace(plant, fault=FaultCourse(sizes.turns_phase, ((0.0, sizes.turns),)))
-        if Cause.ROTOR in causes:
-            plant = replace(plant, broken_bars=sizes.bars / BARS)
-        if Cause.CONNECTION in causes:
-            phase_V = nameplate.rated_voltage_V / sqrt(3.0)
-            resistance_ohm = sizes.joint_drop * phase_V / rated_current(self.motor)
-            plant = replace(plant, joint=JointCourse(sizes.joint_phase, ((0.0, resistance_ohm),)))
-        if Cause.ECCENTRICITY in causes:
-            plant = replace(plant, eccentricity=Eccentricity(sizes.static, sizes.dynamic))
-        return plant
+
+
+def plant_with(
+    causes: Causes,
+    sizes: Sizes,
+    motor: Motor,
+    load_level: float,
+    surroundings: Surroundings,
+    *,
+    seed: int,
+) -> MotorPlant:
+    """Return a simulated motor with causes; parameters that are wrong are those of its file."""
+    nameplate = motor.nameplate
+    unbalance = sizes.unbalance if Cause.SUPPLY in causes else surroundings.unbalance
+    supply = Supply(
+        surroundings.voltage_V,
+        surroundings.frequency_hz,
+        unbalance=abs(unbalance),
+        unbalance_angle_rad=float(np.angle(unbalance)),
+        harmonics=surroundings.harmonics,
+    )
+    swings = Cause.PULSATION in causes
+    pulsations = (Pulsation(sizes.pulsation, frequency_Hz=sizes.pulsation_hz),) if swings else ()
+    errors = list(surroundings.gain_errors)
+    if Cause.CURRENT_CHANNEL in causes:
+        errors[sizes.current_channel] += sizes.current_error
+    if Cause.VOLTAGE_CHANNEL in causes:
+        errors[3 + sizes.voltage_channel] += sizes.voltage_error
+    plant = MotorPlant(
+        motor,
+        supply,
+        Load(load_level, pulsations=pulsations),
+        Sensors(
+            10.0 * rated_current(motor),
+            2.0 * nameplate.rated_voltage_V,
+            gain_errors=tuple(errors),
+            noise=surroundings.noise,
+        ),
+        seed=seed,
+    )
+    if Cause.SHORTED_TURNS in causes:
+        plant = replace(plant, fault=FaultCourse(sizes.turns_phase, ((0.0, sizes.turns),)))
+    if Cause.ROTOR in causes:
+        plant = replace(plant, broken_bars=sizes.bars / BARS)
+    if Cause.CONNECTION in causes:
+        phase_V = nameplate.rated_voltage_V / sqrt(3.0)
+        resistance_ohm = sizes.joint_drop * phase_V / rated_current(motor)
+        plant = replace(plant, joint=JointCourse(sizes.joint_phase, ((0.0, resistance_ohm),)))
+    if Cause.ECCENTRICITY in causes:
+        plant = replace(plant, eccentricity=Eccentricity(sizes.static, sizes.dynamic))
+    return plant

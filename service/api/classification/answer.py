@@ -1,19 +1,13 @@
 """Joins what is stored of a motor, and weighs its causes."""
 
 from dataclasses import dataclass
-from typing import Final
 
 from core.classification.classification import Classification
-from core.classification.motor import MotorEvidence, RecordAnswer, classify_motor
+from core.classification.motor import MOST_LOADS, MOST_RECORDS, MotorEvidence, RecordAnswer, classify_motor
 from core.condition.kinds import Kind, State
 from core.starts.compared import StartChanges
 from service.api.starts.comparison import LATEST, reference_of
 from service.storage import Repository
-
-MOST_RECORDS: Final = 5
-"""Latest records whose answers take part."""
-MOST_LOADS: Final = 60
-"""Latest records whose loads are compared."""
 
 
 @dataclass(frozen=True, slots=True)

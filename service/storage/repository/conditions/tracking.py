@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import fields
-from math import hypot
 from typing import Any, Final
 
 from sqlalchemy import Select, bindparam, exists, select, update
@@ -28,7 +27,6 @@ _OBSERVATIONS: Final = Base.metadata.tables["observations"]
 _NAMES: Final = [field.name for field in fields(TrackedPoint)]
 _FIGURES: Final = [name for name in _NAMES if name not in ("recording_id", "time_ns")]
 _ORDER: Final[Order] = (ObservationRow.time_ns, ObservationRow.recording_id)
-NORMAL_95: Final = 1.96
 
 
 class TrackingRows(Sessions):
@@ -85,16 +83,8 @@ def followed_starts(
 
 def followed_start(time_ns: int, parameters: StartParameters | None) -> FollowedStart | None:
     """Return what a start tells of the rotor; None where it does not tell both resistances."""
-    if parameters is None:
-        return None
-    values, spreads = [], []
-    for name in ("rotor_resistance_ohm", "stator_resistance_ohm"):
-        if name not in parameters.ci95 or not parameters.values[name] > 0.0:
-            return None
-        low, high = parameters.ci95[name]
-        values.append(parameters.values[name])
-        spreads.append((high - low) / (2.0 * NORMAL_95 * parameters.values[name]))
-    return FollowedStart(time_ns, values[0] / values[1], hypot(*spreads))
+    ratio = None if parameters is None else parameters.rotor_over_stator
+    return None if ratio is None else FollowedStart(time_ns, *ratio)
 
 
 def follow_again(session: Session, motor: str, time_ns: int) -> None:
