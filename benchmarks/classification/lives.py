@@ -13,7 +13,6 @@ from core.recordings import Recording
 from core.units import NANOSECONDS_PER_SECOND
 from ied_sim.motor.plant import MotorPlant
 from testing.machines.cause_records import (
-    SETTLING_S,
     SOME_TIME_NS,
     STEP_RATE_HZ,
     CauseCase,
@@ -85,7 +84,7 @@ class Life:
     def _running(self, causes: Causes, number: int) -> Recording:
         random = np.random.default_rng([self.seed, 5, number])
         plant = self._plant(causes, number, random)
-        true = plant.operation(0.0, RECORD_S, RATE_HZ, settling_s=SETTLING_S, step_rate_hz=STEP_RATE_HZ)
+        true = plant.operation(0.0, RECORD_S, RATE_HZ, settling_s=plant.settling_s, step_rate_hz=STEP_RATE_HZ)
         samples = plant.sensors.measure(
             np.vstack([true.currents_A, true.voltages_V]), plant.rated_values, random
         )

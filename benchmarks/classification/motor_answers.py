@@ -3,7 +3,6 @@
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from concurrent.futures import Executor
-from copy import deepcopy
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -20,7 +19,7 @@ from core.classification.causes import NOTHING, PRIORS, Causes
 from core.recordings import Recording
 
 PICTURE = Path("docs/evidence/images/classification/motors.svg")
-FIRST_SEED, SEEDS = 8_000, 2
+FIRST_SEED, SEEDS = 8_500, 2
 TRUTHS: tuple[Causes, ...] = (NOTHING, *(frozenset({cause}) for cause in PRIORS))
 
 
@@ -76,7 +75,7 @@ def lived(truths: Sequence[Causes], life: Life) -> Result:
     """Follow a motor through its past, and from there on with each of the causes."""
     motor = FollowedMotor(life.known())
     past = _followed(motor, life.past(), NOTHING)
-    courses = [Course(truth, _followed(deepcopy(motor), life.present(truth), truth)) for truth in truths]
+    courses = [Course(truth, _followed(motor.copy(), life.present(truth), truth)) for truth in truths]
     return Result(past, tuple(courses))
 
 

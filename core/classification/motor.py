@@ -175,7 +175,8 @@ def _phases(known: MotorEvidence) -> Block | None:
             ratios[cause] = SOUND if known.kind is not Kind.UNCLEAR or suspected else 0.0
             figures[cause] = said
         elif cause is not Cause.ROTOR and of_records is not None:
-            ratios[cause], figures[cause] = of_records
+            ratio, figures[cause] = of_records
+            ratios[cause] = _beyond(ratio, known.records, suspected)
     likelihood = {some: _joined(some, ratios, suspected) for some in together(ratios) if some}
     return Block(frozenset(ratios), likelihood, figures)
 
@@ -183,6 +184,16 @@ def _phases(known: MotorEvidence) -> Block | None:
 _OF_CHANGES: Final = frozenset(
     {Cause.SHORTED_TURNS, Cause.CONNECTION, Cause.VOLTAGE_CHANNEL, Cause.CURRENT_CHANNEL}
 )
+
+
+def _beyond(ratio: float, records: Sequence[RecordAnswer], suspected: Causes) -> float:
+    """Return what records say of a cause beyond what a change explains that the condition sees.
+
+    Each cause is weighed alone in a record, so that shorted turns, say, speak for wrong parameters as well.
+    """
+    found = [_median(records, cause) for cause in suspected]
+    explained = max((one[0] for one in found if one is not None), default=0.0)
+    return max(ratio - max(explained, 0.0), min(ratio, 0.0))
 
 
 def _joined(causes: Causes, ratios: Mapping[Cause, float], suspected: Causes) -> float:
@@ -251,9 +262,22 @@ def _tracked(tracked: TrackedParameters | None) -> list[Block]:
     found = []
     if DriftCause.ROTOR in tracked.causes:
         found.append(only(Cause.ROTOR, FROM_TRACKING / len(tracked.causes), words))
-    if set(tracked.causes) & {DriftCause.RATIO, DriftCause.MAGNETISING, DriftCause.LEAKAGE}:
-        found.append(only(Cause.PARAMETERS, FROM_TRACKING / len(tracked.causes), words))
+    share = FROM_TRACKING / len(tracked.causes)
+    if DriftCause.MAGNETISING in tracked.causes:
+        found.append(_of_gap(share, words))
+    elif set(tracked.causes) & {DriftCause.RATIO, DriftCause.LEAKAGE}:
+        found.append(only(Cause.PARAMETERS, share, words))
     return found
+
+
+def _of_gap(ratio: float, words: str) -> Block:
+    """Return the evidence of another magnetising inductance, which an eccentric rotor has as well.
+
+    The mean permeance of a gap with static eccentricity d_s is higher by 1 / sqrt(1 - d_s^2).
+    """
+    causes = frozenset({Cause.PARAMETERS, Cause.ECCENTRICITY})
+    likelihood = {some: ratio for some in together(causes) if some}
+    return Block(causes, likelihood, {Cause.PARAMETERS: words})
 
 
 def _verdicts(known: MotorEvidence) -> tuple[Verdict, ...]:

@@ -1,7 +1,10 @@
 """The benchmark of causes told apart."""
 
+from itertools import islice
+
 import pytest
 
+from benchmarks.classification.following import FollowedMotor
 from benchmarks.classification.lives import Life
 from benchmarks.classification.motor_answers import Course, Said
 from benchmarks.classification.outcomes import Outcome, outcome_of
@@ -58,3 +61,16 @@ def test_a_cause_changes_nothing_of_what_is_drawn_beside_it() -> None:
     assert (sound.samples[others] == wrong.samples[others]).all()
     assert abs(wrong.samples[channel]).max() != abs(sound.samples[channel]).max()
     assert sound.start_time_ns == wrong.start_time_ns
+
+
+def test_a_copy_of_a_followed_motor_goes_on_as_it_does() -> None:
+    life = Life("small", 3)
+    motor = FollowedMotor(life.known())
+    recordings = (recording for is_start, recording in life.past() if not is_start)
+    for recording in islice(recordings, 2):
+        motor.take_record(recording)
+    same = motor.copy()
+    third = next(recordings)
+    for one in (motor, same):
+        one.take_record(third)
+    assert same.answer() == motor.answer()

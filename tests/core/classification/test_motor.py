@@ -11,6 +11,7 @@ from core.condition.kinds import Kind, State
 from core.rotor.finding import RotorState
 from core.rotor.trend import RotorCondition
 from core.starts.compared import ChangeState, StartCause, StartChanges
+from core.tracking.finding import DriftCause, TrackedParameters, TrackingState
 
 HEALTHY: dict[str, Any] = {"state": State.HEALTHY, "kind": Kind.NONE, "candidates": (), "phase": None}
 UNKNOWN = HEALTHY | {"state": State.UNKNOWN}
@@ -69,6 +70,37 @@ def test_what_the_condition_leaves_open_is_left_open_with_what_would_tell() -> N
         frozenset({Cause.SHORTED_TURNS, Cause.CONNECTION})
     }
     assert any("another load" in test for test in found.not_told_apart[0].tests)
+
+
+def _with(**ratios: float) -> list[RecordAnswer]:
+    told = {Cause[name]: ratio for name, ratio in ratios.items()}
+    return [RecordAnswer({**QUIET.log_likelihood_ratios, **told}, {})] * 3
+
+
+def test_what_a_change_explains_speaks_for_no_other_cause() -> None:
+    records = _with(SHORTED_TURNS=60.0, PARAMETERS=38.0, SUPPLY=6.0)
+    assert _answer(_condition(Kind.SHORTED_TURNS), records=records).answer.causes == {Cause.SHORTED_TURNS}
+    both = _answer(_condition(Kind.SHORTED_TURNS), records=_with(SHORTED_TURNS=20.0, SUPPLY=60.0))
+    assert both.answer.causes == {Cause.SHORTED_TURNS, Cause.SUPPLY}
+
+
+@pytest.mark.parametrize(
+    ("gap", "causes"), [(40.0, {Cause.ECCENTRICITY}), (-4.0, {Cause.PARAMETERS})], ids=["uneven", "even"]
+)
+def test_another_magnetising_inductance_comes_with_an_eccentric_rotor(gap: float, causes: set[Cause]) -> None:
+    tracked = TrackedParameters(
+        state=TrackingState.DRIFTING,
+        parameters=(),
+        records=60,
+        as_of_ns=None,
+        reference_complete=True,
+        winding_excess_K=None,
+        winding_excess_K_ci95=None,
+        causes=(DriftCause.MAGNETISING,),
+        reasons=(),
+    )
+    found = _answer(records=_with(ECCENTRICITY=gap, PARAMETERS=2.0 if gap < 0.0 else -1.5), tracked=tracked)
+    assert found.answer.causes == causes
 
 
 def test_faults_of_stator_and_rotor_are_told_together() -> None:
