@@ -3,7 +3,16 @@
 from pathlib import Path
 
 from benchmarks.page_of_subjects import PageOfSubjects
-from benchmarks.rotor import detection, false_alarms, leakage, measured, one_phase, sideband_figure, speed
+from benchmarks.rotor import (
+    beside_turns,
+    detection,
+    false_alarms,
+    leakage,
+    measured,
+    one_phase,
+    sideband_figure,
+    speed,
+)
 
 PAGE = Path("docs/evidence/rotor.md")
 PREAMBLE = """# Broken rotor bars
@@ -22,6 +31,7 @@ No motor with a broken bar was at hand: what is said of them rests on simulation
 """
 SUBJECTS = {
     "detection": detection.sections,
+    "beside-turns": beside_turns.sections,
     "false-alarms": false_alarms.sections,
     "leakage": leakage.sections,
     "one-phase": one_phase.sections,

@@ -1,5 +1,6 @@
 """The rotor's asymmetry in one record: where its line stands, how large it is, and how sure that is."""
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from math import ceil, floor, hypot, log, pi, sqrt
@@ -88,7 +89,9 @@ class Asymmetry:
         return self.value > self.threshold
 
 
-def measure_asymmetry(baseband: Baseband, angle: Array, motor: Motor) -> Asymmetry:
+def measure_asymmetry(
+    baseband: Baseband, angle: Array, motor: Motor, at_ends: Sequence[Baseband] = ()
+) -> Asymmetry:
     """Find the line of the rotor's asymmetry near twice the model's slip, and what noise is around it.
 
     Parameters
@@ -99,6 +102,8 @@ def measure_asymmetry(baseband: Baseband, angle: Array, motor: Motor) -> Asymmet
         Angle of the sidebands [rad].
     motor : Motor
         Nameplate, parameters and their tolerances, and sensors.
+    at_ends : sequence of Baseband, optional
+        The record at the ends of the 95 % interval of what was taken off it.
 
     Returns
     -------
@@ -106,7 +111,7 @@ def measure_asymmetry(baseband: Baseband, angle: Array, motor: Motor) -> Asymmet
         The greatest asymmetry of the search where there is one; otherwise that of the strongest lines, which
         tell of the load.
     """
-    record = _Record(baseband, angle, motor)
+    record = _Record(baseband, angle, motor, tuple(at_ends))
     first, last = record.search
     kappa = np.linspace(first, last, max(2, ceil((last - first) * POINTS_A_TURN) + 1)) / record.turns
     lines = fit_lines(baseband, angle, kappa)
@@ -128,6 +133,7 @@ class _Record:
     baseband: Baseband
     angle: Array
     motor: Motor
+    at_ends: tuple[Baseband, ...]
 
     @property
     def turns(self) -> float:
@@ -143,7 +149,9 @@ class _Record:
     def search(self) -> tuple[float, float]:
         """Distances between which the line is looked for, in cycles over the record."""
         turns, ratios = self.turns, resistance_ratios(self.motor)
-        lowest, highest = LOWEST_RATIO * ratios.least, HIGHEST_RATIO * ratios.most
+        slip = running_point(self.baseband, self.motor).slip(self.motor)
+        slips = [1.0, *(running_point(one, self.motor).slip(self.motor) / slip for one in self.at_ends)]
+        lowest, highest = LOWEST_RATIO * ratios.least * min(slips), HIGHEST_RATIO * ratios.most * max(slips)
         fewest = FEWEST_TURNS_OF_ANY if ratios.are_open else FEWEST_TURNS
         return max(lowest * turns, fewest), min(highest * turns, self.highest)
 
@@ -176,6 +184,12 @@ class _Record:
         distance = kappa * (2.0 * pi * self.turns / self.baseband.span_s)
         return beyond_a_ripple(lines, distance, running_point(self.baseband, self.motor), self.motor)
 
+    def errors(self) -> Iterator[tuple[Motor, Baseband, float]]:
+        """Yield motor and record with one figure wrong, each with its standard deviations."""
+        yield from errors(self.baseband, self.motor)
+        for one in self.at_ends:
+            yield self.motor, one, sqrt(1.0 / len(self.at_ends)) / NORMAL_95
+
     def asymmetry(
         self, line: Lines, kappa: Array, motor: Motor | None = None, baseband: Baseband | None = None
     ) -> complex:
@@ -201,7 +215,7 @@ def _measured(record: _Record, line: Lines, kappa: Array) -> Asymmetry:
     value, size = complex(found.asymmetry[0]), float(record.sizes(line, kappa)[0])
     ripple = _of_the_ripple_alone(record, line, kappa)
     scale, leak = MODEL_SHARE * abs(value), 0.0
-    for motor, wrong, deviations in errors(baseband, record.motor):
+    for motor, wrong, deviations in record.errors():
         other = record.asymmetry(line, kappa, motor, wrong)
         scale = hypot(scale, deviations * (abs(other) - abs(value)))
         leak = hypot(leak, deviations * abs(record.asymmetry(ripple, kappa, motor, wrong)))

@@ -11,6 +11,7 @@ from core.rotor.baseband import Baseband
 from core.rotor.finding import RotorFinding, RotorState, decibels, load_bin
 from core.rotor.judgement import judge
 from core.rotor.running_point import running_point, slip_course, without_delay
+from core.rotor.shorted_turns import without_shorted_turns
 from core.rotor.sidebands import sideband_angle
 
 FEWEST_TURNS = 1.5
@@ -53,6 +54,12 @@ def examine_rotor(recorded: Baseband, accepted: Accepted, diagnosis: Diagnosis) 
     baseband = without_delay(recorded, motor, diagnosis.time_offset_s, assumed=case.voltages_assumed)
     if baseband is None:
         return _unsupported(duration_s, "the currents are not those of this motor at these voltages")
+    at_ends: list[Baseband] = []
+    fit, ends = diagnosis.fit, diagnosis.mu_f_ci95
+    # Turns that cannot be excluded need not be there: what is taken off for them could hide a line.
+    if diagnosis.phase is not None and fit is not None and ends is not None and ends[0] > 0.0:
+        at_ends = [without_shorted_turns(baseband, motor, level, fit.path_ratio) for level in ends]
+        baseband = without_shorted_turns(baseband, motor, fit.mu_f, fit.path_ratio)
     point = running_point(baseband, motor)
     slip, load_level = point.slip(motor), point.torque_Nm / motor.nameplate.rated_torque_Nm
     if diagnosis.phase is not None and diagnosis.load_level is not None:
@@ -66,7 +73,7 @@ def examine_rotor(recorded: Baseband, accepted: Accepted, diagnosis: Diagnosis) 
     if 2.0 * slip * case.frequency_hz * duration_s < FEWEST_TURNS:
         return unsupported(_too_short(baseband, slip, case.frequency_hz))
     angle = sideband_angle(baseband, slip_course(baseband, motor, slip))
-    found = measure_asymmetry(baseband, angle, motor)
+    found = measure_asymmetry(baseband, angle, motor, at_ends)
     state, reasons = judge(found, motor.kind, assumed=case.voltages_assumed, typical=motor.is_typical)
     if ratios.are_open:
         turns = 2.0 * slip * case.frequency_hz * duration_s

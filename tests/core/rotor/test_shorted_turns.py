@@ -1,0 +1,77 @@
+"""A rotor beside shorted turns: their current comes off, and what is left is the rotor's."""
+
+from cmath import exp
+from dataclasses import replace
+from math import pi
+
+import numpy as np
+import pytest
+
+from core.classification.causes import Cause
+from core.condition.measuring.observing import examine
+from core.machines.base import CLARKE_PHASE
+from core.machines.parameters import Connection, Motor
+from core.machines.split_winding import SplitWinding
+from core.rotor.baseband import Baseband
+from core.rotor.finding import RotorState
+from core.rotor.shorted_turns import without_shorted_turns
+from testing.machines.cause_records import CauseCase
+from testing.machines.motors import MEDIUM, REFERENCE
+from testing.machines.rotor_records import RotorCase
+
+SEED = 1
+ONE_BAR_DB = RotorCase(MEDIUM, broken_share=1.0 / 28.0).asymmetry_dB
+WITHIN_DB = 1.5
+"""The level of the turns is known within a tenth, and that is as much of their loss."""
+
+
+@pytest.mark.parametrize("connection", Connection)
+def test_what_is_left_is_the_current_of_the_sound_rest(connection: Connection) -> None:
+    """Of the split winding's five circuits that is i_s - k n j, solved here at one speed."""
+    motor = replace(MEDIUM, nameplate=replace(MEDIUM.nameplate, connection=connection))
+    level, path_ratio, winding, w_s, slip, volts = 0.05, 0.3, 1, 2.0 * pi * 50.0, 0.02, 400.0
+    circuits = SplitWinding().circuits(motor, np.array([level]), np.array([winding]), np.array([path_ratio]))
+    L, R = circuits.inductance[0], circuits.resistance[0]
+    turning = np.zeros((5, 5))
+    turning[2, 3], turning[3, 2] = -(1.0 - slip) * w_s, (1.0 - slip) * w_s
+    impedance = R + 1j * w_s * L - turning @ L
+    current = np.linalg.solve(impedance, volts * np.array([1.0, -1j, 0.0, 0.0, 0.0]))
+    drawn = (current[0] + 1j * current[1]) / 2.0
+    in_turns = CLARKE_PHASE * exp(2j * pi / 3.0 * winding) * current[4] / 2.0
+
+    found = without_shorted_turns(_steady(volts, drawn, w_s), motor, level, path_ratio)
+    assert abs(in_turns) > 0.1 * abs(drawn)
+    assert found.current == pytest.approx(np.full(8, drawn - in_turns), rel=1e-9)
+
+
+@pytest.mark.parametrize("motor", [REFERENCE, MEDIUM], ids=lambda motor: motor.name)
+def test_a_broken_bar_is_found_beside_shorted_turns_at_low_load(motor: Motor) -> None:
+    case = CauseCase(motor, frozenset({Cause.ROTOR, Cause.SHORTED_TURNS}), 0.4, SEED)
+    examined = examine(case.record(), case.known())
+    assert examined.diagnosis.phase == "b"
+    assert examined.rotor is not None
+    assert examined.rotor.state is RotorState.FAULT
+    assert examined.rotor.severity_dB == pytest.approx(ONE_BAR_DB, abs=WITHIN_DB)
+    assert examined.rotor.severity_dB_ci95 is not None
+    low, high = examined.rotor.severity_dB_ci95
+    assert low < ONE_BAR_DB < high
+
+
+def test_shorted_turns_alone_make_no_uneven_rotor() -> None:
+    case = CauseCase(MEDIUM, frozenset({Cause.SHORTED_TURNS}), 0.4, SEED)
+    examined = examine(case.record(), case.known())
+    assert examined.rotor is not None
+    assert examined.rotor.state is RotorState.HEALTHY
+
+
+def _steady(volts: float, current: complex, w_s: float) -> Baseband:
+    points = np.arange(8)
+    return Baseband(
+        time_s=points / 200.0,
+        angular_frequency=np.full(8, w_s),
+        voltage=np.full(8, volts + 0j),
+        current=np.full(8, current),
+        cycle_s=2.0 * pi / w_s,
+        is_whole=True,
+        spikes=0,
+    )
