@@ -18,7 +18,7 @@ Waters: Estimation of induction motor equivalent circuit parameters from namepla
 Symposium 2012. IEC 60034-1, clause 12.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import exp, hypot, log, pi, sqrt
 
@@ -40,9 +40,9 @@ from core.commissioning.rated_performance import (
     performance,
 )
 from core.machines.base import Array
-from core.machines.parameters import MachineParameters, Nameplate
+from core.machines.parameters import MachineParameters, Nameplate, WoundRotor
 from core.machines.plausibility import plausible_parameters
-from core.machines.typical import FACTORS, typical_parameters
+from core.machines.typical import typical_parameters
 from core.quantity_text import plain
 
 NORMAL_95 = 1.96
@@ -64,6 +64,8 @@ PRIOR_OF_OTHERS = {
     OTHER: (log(0.45), 0.3),
 }
 """Logarithms with standard deviations: k_R, k_X, and the share of the losses that are not of the windings."""
+SKIN_OF_A_WINDING = (log(1.05), 0.05)
+"""The same of k_R where the rotor has coils of many turns: their current crowds little."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,7 +111,11 @@ class CircuitFound:
 
 
 def circuit_from_catalogue(
-    data: CatalogueData, nameplate: Nameplate, *, inertia_kgm2: float | None = None
+    data: CatalogueData,
+    nameplate: Nameplate,
+    wound_rotor: WoundRotor | None = None,
+    *,
+    inertia_kgm2: float | None = None,
 ) -> CircuitFound:
     """Find the equivalent circuit that comes nearest to a catalogue.
 
@@ -119,6 +125,8 @@ def circuit_from_catalogue(
         The figures.
     nameplate : Nameplate
         Rated values of the motor.
+    wound_rotor : WoundRotor or None, optional
+        Its rotor's winding, whose plate tells the resistance; None of a cage.
     inertia_kgm2 : float or None, optional
         Inertia of motor and load; typical of the rating if None [kg m^2].
 
@@ -135,7 +143,7 @@ def circuit_from_catalogue(
     from scipy.optimize import least_squares  # its import takes longer than the fit
 
     check_figures(data, nameplate)
-    middle, deviation = _prior(nameplate)
+    middle, deviation = _prior(nameplate, wound_rotor)
     figures = _Figures(data, nameplate)
 
     def residuals(x: Array) -> Array:
@@ -149,7 +157,7 @@ def circuit_from_catalogue(
     slopes = np.asarray(fit.jac, dtype=np.float64)
     spread = np.sqrt(np.diag(np.linalg.inv(slopes.T @ slopes)))
     base_ohm, w = nameplate.base_impedance_ohm, nameplate.rated_angular_frequency
-    typical = typical_parameters(nameplate)
+    typical = typical_parameters(nameplate, wound_rotor)
     R_s, R_r, X_l, X_m = np.exp(fit.x[:4]).tolist()
     parameters = MachineParameters.from_magnetising_inductance(
         stator_resistance_ohm=R_s * base_ohm,
@@ -184,7 +192,12 @@ def circuit_from_catalogue(
     return CircuitFound(parameters, intervals, compared)
 
 
-def figures_of(machine: MachineParameters, data: CatalogueData, nameplate: Nameplate) -> tuple[Compared, ...]:
+def figures_of(
+    machine: MachineParameters,
+    data: CatalogueData,
+    nameplate: Nameplate,
+    wound_rotor: WoundRotor | None = None,
+) -> tuple[Compared, ...]:
     """Hold a circuit that is known against the figures of a catalogue.
 
     Parameters
@@ -195,6 +208,8 @@ def figures_of(machine: MachineParameters, data: CatalogueData, nameplate: Namep
         The figures; none need be given.
     nameplate : Nameplate
         Rated values of the motor.
+    wound_rotor : WoundRotor or None, optional
+        Its rotor's winding; None of a cage.
 
     Returns
     -------
@@ -210,7 +225,7 @@ def figures_of(machine: MachineParameters, data: CatalogueData, nameplate: Namep
 
     check_figures(data, nameplate, fewest=0)
     base_ohm, w = nameplate.base_impedance_ohm, nameplate.rated_angular_frequency
-    x, _ = _prior(nameplate)
+    x, deviation = _prior(nameplate, wound_rotor)
     x[[R_S, R_R, X_M]] = np.log(
         [
             machine.stator_resistance_ohm / base_ohm,
@@ -233,7 +248,9 @@ def figures_of(machine: MachineParameters, data: CatalogueData, nameplate: Namep
             found="one that does not: check unit, base and which values these are",
         )
     x[SLIP] = log(brentq(output, 1e-6, slips[0]))
-    return _Figures(data, nameplate).compared(x, unknown=(SKIN, SATURATION, OTHER))
+    return _Figures(data, nameplate).compared(
+        x, unknown=[(place, float(deviation[place])) for place in (SKIN, SATURATION, OTHER)]
+    )
 
 
 class _Figures:
@@ -265,16 +282,17 @@ class _Figures:
         rest = [self._deviations(name, computed[name]) for name in self._given]
         return np.array([(computed["output"] - 1.0) / 0.003, *rest])
 
-    def compared(self, x: Array, *, unknown: tuple[int, ...] = ()) -> tuple[Compared, ...]:
+    def compared(self, x: Array, *, unknown: Sequence[tuple[int, float]] = ()) -> tuple[Compared, ...]:
         """Return all figures beside those of a circuit, in their own units.
 
-        unknown: places of what is not known of the circuit, but typical of the rating.
+        unknown: places of what is not known of the circuit but typical of the rating, with the standard
+        deviation of its logarithm.
         """
         computed = performance(x)
         others = []
-        for place in unknown:
+        for place, deviation in unknown:
             other = x.copy()
-            other[place] += PRIOR_OF_OTHERS[place][1]
+            other[place] += deviation
             others.append(performance(other))
 
         def spread(name: str) -> float:
@@ -315,20 +333,22 @@ def _logarithm(value: float) -> float:
     return log(max(value, LEAST_RATIO))
 
 
-def _prior(nameplate: Nameplate) -> tuple[Array, Array]:
+def _prior(nameplate: Nameplate, wound_rotor: WoundRotor | None) -> tuple[Array, Array]:
     """Return the logarithms that are typical of the rating, and their standard deviations."""
-    typical, base_ohm = typical_parameters(nameplate).parameters, nameplate.base_impedance_ohm
+    found, base_ohm = typical_parameters(nameplate, wound_rotor), nameplate.base_impedance_ohm
+    typical = found.parameters
     w = 2.0 * pi * nameplate.rated_frequency_Hz
     R_r = typical.rotor_resistance_ohm / base_ohm
+    others = PRIOR_OF_OTHERS if wound_rotor is None else PRIOR_OF_OTHERS | {SKIN: SKIN_OF_A_WINDING}
     middle = [
         log(typical.stator_resistance_ohm / base_ohm),
         log(R_r),
         log(w * typical.stator_leakage_H / base_ohm),
         log(w * typical.magnetising_inductance_H / base_ohm),
-        *(PRIOR_OF_OTHERS[k][0] for k in (SKIN, SATURATION, OTHER)),
+        *(others[k][0] for k in (SKIN, SATURATION, OTHER)),
         log(R_r),
     ]
     names = ("stator_resistance_ohm", "rotor_resistance_ohm", "stator_leakage_H", "stator_self_inductance_H")
-    deviation = [log(FACTORS[name]) / 2.0 for name in names]
-    deviation += [PRIOR_OF_OTHERS[k][1] for k in (SKIN, SATURATION, OTHER)]
+    deviation = [log(found.intervals[name][1] / getattr(typical, name)) / 2.0 for name in names]
+    deviation += [others[k][1] for k in (SKIN, SATURATION, OTHER)]
     return np.array(middle), np.array([*deviation, 1.0])

@@ -212,7 +212,7 @@ def _reasons(state: RotorState, latest: Sequence[JudgedRecord]) -> tuple[str, ..
     reasons = []
     if faults:
         again = "" if state is RotorState.FAULT else ": one record alone is not believed"
-        reasons.append(f"{faults} of the latest {count} records show a fault of the cage{again}")
+        reasons.append(f"{faults} of the latest {count} records show a fault of the rotor{again}")
     if watched:
         reasons.append(f"{watched} of the latest {count} records show an uneven rotor")
     if risen:

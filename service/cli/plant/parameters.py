@@ -31,7 +31,7 @@ from core.commissioning.errors import CommissioningError
 from core.machines.motor_file.error import MotorFileError
 from core.machines.motor_file.reader import motor_from_table, read_plate
 from core.machines.motor_file.writer import motor_text, write_motor
-from core.machines.parameters import MachineParameters, Motor, Nameplate, ParametersSource
+from core.machines.parameters import MachineParameters, Motor, Nameplate, ParametersSource, WoundRotor
 from core.quantity_text import plain
 from service.cli.output import WRONG_USE, failing_clearly, print_document, print_warning, results
 from service.cli.recordings.commission import check_output
@@ -111,7 +111,7 @@ def parameters_of_data_sheet(
         check_output(output, nameplate, ())
     with failing_clearly(CommissioningError, exit_code=WRONG_USE), failing_clearly(MotorFileError, OSError):
         plate = read_plate(nameplate)
-        parameters, intervals, compared = _found(sheet, plate.nameplate)
+        parameters, intervals, compared = _found(sheet, plate.nameplate, plate.wound_rotor)
         motor = replace(plate.motor, parameters=parameters, parameters_source=ParametersSource.DATA_SHEET)
         warnings = _warnings(compared, from_impedances=sheet.has_impedances)
         if not sheet.has_impedances:
@@ -150,7 +150,7 @@ def _kept(output: Path, nameplate: Path) -> Path | None:
 
 
 def _found(
-    sheet: DataSheet, nameplate: Nameplate
+    sheet: DataSheet, nameplate: Nameplate, wound_rotor: WoundRotor | None
 ) -> tuple[MachineParameters, dict[str, Interval], tuple[Compared, ...]]:
     """Return parameters, intervals, and the catalogue's figures beside the circuit's."""
     if sheet.inertia_kgm2 is not None:
@@ -169,13 +169,13 @@ def _found(
     if not sheet.has_impedances:
         resistance = _winding_resistance(sheet, nameplate, reading)
         data = replace(data, stator_resistance_ohm=resistance)
-        found = circuit_from_catalogue(data, nameplate, inertia_kgm2=sheet.inertia_kgm2)
+        found = circuit_from_catalogue(data, nameplate, wound_rotor, inertia_kgm2=sheet.inertia_kgm2)
         return found.parameters, found.intervals, found.compared
     impedances = _impedances(sheet, nameplate, reading)
     machine = winding_parameters(impedances, nameplate, reading, inertia_kgm2=sheet.inertia_kgm2)
     known = sheet.inertia_kgm2 is not None
     intervals = intervals_of_data_sheet(machine, inertia_is_known=known, nameplate=nameplate)
-    return machine, intervals, figures_of(machine, data, nameplate)
+    return machine, intervals, figures_of(machine, data, nameplate, wound_rotor)
 
 
 def _base_VA(sheet: DataSheet, nameplate: Nameplate) -> float | None:

@@ -26,15 +26,24 @@ TONES: Final = (Tone.A, Tone.B, Tone.C, Tone.MODEL, Tone.ACCENT)
 
 
 class RotorPart(NamedTuple):
-    """What the page calls a rotor, and its fault."""
+    """What the page calls a rotor and its fault, and what its severity does not tell."""
 
     name: str
     fault: str
+    note: str
 
 
 PARTS: Final = {
-    MachineKind.CAGE: RotorPart("cage", "broken bars or a broken end ring"),
-    MachineKind.WOUND_ROTOR: RotorPart("rotor winding", "a bad contact of a brush or a slip ring"),
+    MachineKind.CAGE: RotorPart(
+        "cage",
+        "broken bars or a broken end ring",
+        "A severity tells how uneven the cage is, never how many bars are broken.",
+    ),
+    MachineKind.WOUND_ROTOR: RotorPart(
+        "rotor winding",
+        "a bad contact of a brush or a slip ring",
+        "A severity tells how uneven the resistances of the rotor's phases are, not in which phase.",
+    ),
 }
 
 
@@ -45,6 +54,7 @@ class RotorSection:
     start: None where no start tells of it, or no running record.
     """
 
+    part: RotorPart
     latest: RotorEntry | None
     condition: RotorCondition
     words: str
@@ -65,6 +75,7 @@ def rotor_section(repository: Repository, motor: str, kind: MachineKind) -> Roto
     latest = telling[-1] if telling else (entries[-1] if entries else None)
     condition = repository.rotor_condition(motor)
     return RotorSection(
+        part=PARTS[kind],
         latest=latest,
         condition=condition,
         words=STATES[condition.state],
@@ -139,7 +150,7 @@ def _severity_chart(motor: str, entries: Sequence[RotorEntry]) -> Chart:
         key="rotor-severity",
         caption=f"Asymmetry of the rotor of {motor}",
         x_label="time",
-        y_label="asymmetry of the cage",
+        y_label="asymmetry of the rotor",
         y_unit="dB",
         x_kind=AxisKind.TIME,
         x=_times(entries),

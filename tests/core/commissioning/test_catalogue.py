@@ -11,7 +11,8 @@ from core.commissioning.catalogue import circuit_from_catalogue, figures_of
 from core.commissioning.catalogue_data import CatalogueData
 from core.commissioning.circuit_doubts import circuit_doubts
 from core.commissioning.errors import CommissioningError
-from core.machines.parameters import Connection, MachineParameters, Nameplate
+from core.machines.parameters import Connection, MachineParameters, Motor, Nameplate
+from testing.machines.wound_rotors import HOIST, MILL
 from tests.core.machines.test_typical import PUBLISHED, Published
 
 PUMP = Nameplate(450e3, 3300.0, 50.0, 1)
@@ -72,6 +73,24 @@ def test_published_motors_lie_within_the_intervals_of_their_own_catalogue(publis
         assert narrow[1] / narrow[0] < 1.6
         assert max(abs(one.deviations or 0.0) for one in found.compared) < 1.0
         assert circuit_doubts(found.parameters, found.compared, published.nameplate) == ()
+
+
+@pytest.mark.parametrize("motor", [HOIST, MILL], ids=lambda motor: motor.name)
+def test_a_wound_rotor_has_the_resistance_of_its_plate_and_no_deep_bars(motor: Motor) -> None:
+    """Its catalogue has no locked rotor: it never starts with shorted rings."""
+    complete = catalogue_of(Published(motor.nameplate, motor.parameters), 0.7)
+    data = replace(complete, rated_speed_rpm=None, locked_rotor_current=None, locked_rotor_torque=None)
+    found = circuit_from_catalogue(data, motor.nameplate, motor.wound_rotor)
+    for name, (low, high) in found.intervals.items():
+        assert low <= getattr(motor.parameters, name) <= high, name
+    as_a_cage = circuit_from_catalogue(data, motor.nameplate).intervals
+    assert _width(found.intervals["rotor_resistance_ohm"]) < _width(as_a_cage["rotor_resistance_ohm"])
+    locked = next(one for one in found.compared if one.name == "locked_rotor_torque")
+    assert locked.computed == pytest.approx(complete.locked_rotor_torque, abs=0.4)
+
+
+def _width(interval: tuple[float, float]) -> float:
+    return interval[1] / interval[0]
 
 
 def test_the_circuit_found_has_the_figures_that_it_is_said_to_have() -> None:

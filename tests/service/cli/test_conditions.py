@@ -129,7 +129,7 @@ def test_health_tells_the_rotor(mcc: Mcc, repository: Repository, tmp_path: Path
         recorded.add(BROKEN_ROTOR)
     shown = unframed(mcc("health", "PUMP-A1"))
     assert "rotor fault, -29.0 dB what to do Have the cage inspected" in shown
-    assert "2 of the latest 2 records show a fault of the cage" in shown
+    assert "2 of the latest 2 records show a fault of the rotor" in shown
     assert json.loads(mcc("health", "PUMP-A1", "--json"))["rotor"]["state"] == "fault"
 
 

@@ -97,7 +97,7 @@ def _tell(
 
 def _reason(condition: RotorCondition) -> str:
     severity_dB, change_dB = condition.severity_dB, condition.change_dB
-    told = [] if severity_dB is None else [f"asymmetry of the cage {severity_dB:.1f} dB"]
+    told = [] if severity_dB is None else [f"asymmetry of the rotor {severity_dB:.1f} dB"]
     if change_dB is not None:
         told.append(f"{change_dB:+.1f} dB against the baseline of its load")
     return "; ".join([*told, *condition.reasons])

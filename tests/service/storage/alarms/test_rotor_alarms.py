@@ -42,7 +42,7 @@ def test_a_fault_is_told_when_two_records_agree_and_is_over_when_they_do_no_more
     latest = recorded.add(BROKEN_ROTOR)
     assert settled(recorded) == [(AlarmKind.ROTOR_FAULT, calls)]
     (alarm,) = opened(recorded.repository)
-    assert alarm.reason.startswith("asymmetry of the cage -29.0 dB; 2 of the latest 3 records show a fault")
+    assert alarm.reason.startswith("asymmetry of the rotor -29.0 dB; 2 of the latest 3 records show a fault")
     assert alarm.what_to_do.startswith("Have the cage inspected at the next planned stop")
     assert (alarm.recording_id, alarm.priority) == (latest, "high")
 
