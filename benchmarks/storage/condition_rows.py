@@ -17,6 +17,7 @@ from benchmarks.storage.rows import (
     recording_state,
     time_of,
 )
+from core.units import NANOSECONDS_PER_DAY
 from service.storage.migrations.versions.v0040_condition_days import FILL
 from service.storage.models import Base
 
@@ -63,6 +64,10 @@ _SUPPLY_COLUMNS = (
     "voltage_harmonics", "line_currents_A", "current_unbalance", "thd_current", "current_harmonics",
     "active_power_W", "power_factor", "duration_s", "reasons",
 )  # fmt: skip
+_STATISTICS_COLUMNS = (
+    "motor", "time_ns", "since_ns", "starts", "running_s", "stopped_s", "mean_current_A", "peak_current_A",
+    "peak_start_current_A", "longest_start_s", "trips",
+)  # fmt: skip
 
 HARMONICS = "[1.0,0.001,0.004,0.0,0.03,0.0,0.017,0.0,0.0,0.0,0.006,0.0,0.004,0.0,0.0,0.0,0.002]"
 REASONS = '["no asymmetry of the rotor above -52 dB"]'
@@ -76,6 +81,8 @@ def tables(amounts: Amounts) -> Iterator[Table]:
     yield Table("starts", _START_COLUMNS, _starts(amounts))
     yield Table("rotor_findings", _ROTOR_COLUMNS, _rotor_findings(amounts))
     yield Table("supply_figures", _SUPPLY_COLUMNS, _supply_figures(amounts))
+    yield Table("relay_statistics", _STATISTICS_COLUMNS, _relay_statistics(amounts))
+    yield Table("relay_events", ("motor", "kind", "time_ns"), _relay_events(amounts))
 
 
 def judge(connection: Connection) -> None:
@@ -153,6 +160,19 @@ def _supply_figures(amounts: Amounts) -> Iterator[Row]:
             1.0, -0.003, 0.021, 0.0085, HARMONICS, "[1.5,1.48,1.53]", 0.02, 0.035, HARMONICS, 612.5, 0.61,
             10.0, "[]",
         )  # fmt: skip
+
+
+def _relay_statistics(amounts: Amounts) -> Iterator[Row]:
+    for number, motor, time_ns in _observed(amounts):
+        if number % TOLD == 0:
+            since_ns = time_ns - 30 * NANOSECONDS_PER_DAY
+            yield motor, time_ns, since_ns, 17, 432_000.0, 9000.0, 14.2, 19.0, 92.0, 1.3, '{"overcurrent":1}'
+
+
+def _relay_events(amounts: Amounts) -> Iterator[Row]:
+    for number, motor, time_ns in _observed(amounts):
+        if number % STARTED == 0:
+            yield motor, "start", time_ns
 
 
 def _said(mu_f: float) -> Row:

@@ -36,6 +36,8 @@ GROWING = frozenset(
         "condition_events",
         "rotor_findings",
         "starts",
+        "relay_events",
+        "relay_statistics",
         "supply_figures",
     }
 )

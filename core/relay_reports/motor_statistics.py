@@ -12,6 +12,7 @@ from core.relay_reports.report_text import Line, report_text
 _ENTRY = re.compile(r"(\S.*?)(?:\s{2,}|\s*:\s+)(\S.*)")
 _HOURS = re.compile(r"(\d{1,7}):([0-5]\d):([0-5]\d)(?:\s*\(h:mm:ss\))?", re.ASCII)
 _TRIPS = "trips, "
+_CLOCK = re.compile(r".*\bDate:\s*(\S+)\s+Time:\s*(\S+)", re.IGNORECASE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,6 +21,8 @@ class MotorStatistics:
 
     Parameters
     ----------
+    time_ns : int
+        Time of the report, by the relay's clock, as if this were in UTC.
     since_ns : int or None
         Since when, by the relay's clock, as if this were in UTC.
     running_s, stopped_s : float or None
@@ -34,6 +37,7 @@ class MotorStatistics:
         Number of trips by what the relay calls their cause.
     """
 
+    time_ns: int
     since_ns: int | None
     running_s: float | None
     stopped_s: float | None
@@ -67,12 +71,17 @@ def read_motor_statistics(
     Raises
     ------
     ReportError
-        If nothing of them is there, something is twice, or a figure is none.
+        If nothing of them is there, something is twice, a figure is none, or the report has no date.
     OSError
         If the file cannot be read.
     """
     entries: dict[str, tuple[Line, str]] = {}
+    time_ns = None
     for line in report_text(report, name).lines():
+        clock = _CLOCK.fullmatch(line.text)
+        if clock is not None and time_ns is None:
+            time_ns = time_of(line, clock[1], clock[2], date_order)
+            continue
         entry = _ENTRY.fullmatch(line.text)
         if entry is None:
             continue
@@ -82,6 +91,8 @@ def read_motor_statistics(
         entries[label] = (line, entry[2])
     if "running time" not in entries and "number of starts" not in entries:
         raise ReportError(name, "end", expected='"Running time" or "Number of starts"', found="neither")
+    if time_ns is None:
+        raise ReportError(name, "heading", expected="the relay's clock, as Date: and Time:", found="none")
 
     def figure(label: str) -> float | None:
         if label not in entries:
@@ -97,6 +108,7 @@ def read_motor_statistics(
 
     trips = [label for label in entries if label.startswith(_TRIPS)]
     return MotorStatistics(
+        time_ns=time_ns,
         since_ns=_since(entries, date_order),
         running_s=_duration(entries, "running time"),
         stopped_s=_duration(entries, "stopped time"),

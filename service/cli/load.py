@@ -34,6 +34,8 @@ def _facts(load: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     yield "mean load", _percent(load["mean_load"])
     yield "energy", NOT_TOLD if load["energy_kWh"] is None else f"{plain(load['energy_kWh'])} kWh"
     yield "starts", NOT_TOLD if load["starts"] is None else f"at least {load['starts']}"
+    if load["relay_statistics"] is not None:
+        yield from _relay(load["relay_statistics"])
     thermal = load["thermal"]
     if thermal is None:
         return
@@ -49,6 +51,23 @@ def _facts(load: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         yield "by resistance", "; ".join(thermal["reasons"])
     else:
         yield "by resistance", f"{_kelvin(by_resistance)} against the record of {thermal['reference_time']}"
+
+
+def _relay(told: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    since = f"{told['since_time']} to {told['time']}" if told["since_time"] else f"up to {told['time']}"
+    yield "relay's statistics", since
+    starts = NOT_TOLD if told["starts"] is None else str(told["starts"])
+    counted = "" if told["counted_starts"] is None else f"; counted here: {told['counted_starts']}"
+    yield "  starts", starts + counted
+    hours = told["counted_running_hours"]
+    beside = (
+        "" if hours is None else f"; measured here: {_hours(hours)} of {_hours(told['known_hours'])} known"
+    )
+    yield "  running", _hours(told["running_hours"]) + beside
+    trips = ", ".join(f"{cause} {number}" for cause, number in told["trips"].items() if number)
+    yield "  trips", trips or "none"
+    for remark in told["remarks"]:
+        yield "  remark", remark
 
 
 def _classes(load: Mapping[str, Any]) -> FittedTable:

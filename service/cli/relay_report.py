@@ -40,6 +40,12 @@ def _lines(found: Mapping[str, Any], name: str) -> Iterator[str]:
         yield from _starts(found["motor_starts"], name)
     if found["load_profile"] is not None:
         yield from _load(found["load_profile"])
+    if found["motor_statistics"] is not None:
+        told = found["motor_statistics"]
+        what = "kept; mcc load shows them" if told["added"] else "were there already"
+        yield f"statistics of {to_the_second(told['time'])}: {what}"
+    if found["events"] is not None:
+        yield from _events(found["events"])
 
 
 def _starts(found: Mapping[str, Any], name: str) -> Iterator[str]:
@@ -59,3 +65,13 @@ def _load(found: Mapping[str, Any]) -> Iterator[str]:
         yield f"rows of a quarter of an hour that is not over, or ahead of the time: {found['not_over']}"
     for one in found["left_out"]:
         yield f"column {one['column']}: left out: {one['reason']}"
+
+
+def _events(found: Mapping[str, Any]) -> Iterator[str]:
+    yield f"starts, stops and trips that were not known: {found['added']}"
+    if found["known"]:
+        yield f"known already: {found['known']}"
+    if found["ahead"]:
+        yield f"ahead of the time, left out: {found['ahead']}"
+    if found["left_out"]:
+        yield f"other elements, left out: {', '.join(found['left_out'])}"

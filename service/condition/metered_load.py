@@ -17,6 +17,7 @@ from core.thermal.relay_model import settings_of
 from core.thermal.two_bodies import TwoBodies
 from core.thermal.winding_temperature import WindingTemperature, winding_temperature
 from core.units import NANOSECONDS_PER_DAY, NANOSECONDS_PER_SECOND
+from service.condition.relay_statistics import ComparedStatistics, compared_statistics
 from service.plant import AveragingStep
 from service.storage import Repository
 
@@ -68,6 +69,7 @@ class MotorLoad:
     step: of the means that it is told by.  rises: of winding and frame at the end; None where nothing was
     metered.  winding: None without two records of the same sensors.  capacity_used: of the relay's thermal
     element, between bounds; None where the motors file does not tell its settings, or nothing was metered.
+    relay: the relay's own statistics; None where none were brought.
     """
 
     profile: LoadProfile
@@ -76,6 +78,7 @@ class MotorLoad:
     rises: BoundedRises | None
     winding: WindingRise | None
     capacity_used: tuple[float, float] | None = None
+    relay: ComparedStatistics | None = None
 
 
 def motor_load(
@@ -99,6 +102,7 @@ def motor_load(
         rises=_rises(repository, motor, now_ns),
         winding=_winding(repository, motor),
         capacity_used=None if thermal is None else _capacity_used(repository, motor, thermal, now_ns),
+        relay=compared_statistics(repository, motor),
     )
 
 

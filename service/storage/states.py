@@ -114,6 +114,14 @@ class MeasurementSource(StrEnum):
     POLLED = "polled"
 
 
+class RelayEventKind(StrEnum):
+    """What a relay's sequence of events tells of its motor."""
+
+    START = "start"
+    STOP = "stop"
+    TRIP = "trip"
+
+
 class RecordingSource(StrEnum):
     """Where a recording came from."""
 

@@ -5,6 +5,7 @@ from pydantic import Field
 from service.api.document import Document, Listed
 from service.api.times import Time
 from service.condition.metered_load import MotorLoad
+from service.condition.relay_statistics import SECONDS_PER_HOUR
 
 Interval = tuple[float, float]
 
@@ -53,6 +54,29 @@ class ThermalState(Document):
     relay_capacity_used: Interval | None
 
 
+class RelayStatistics(Document):
+    """What the relay's latest statistics report tells, and what the service counted in the same time.
+
+    counted_...: null where the report does not tell since when. known_hours: of that time, whether the motor
+    ran. remarks: where both disagree, and the likely reason.
+    """
+
+    time: Time
+    since_time: Time | None
+    running_hours: float | None
+    standing_hours: float | None
+    starts: int | None
+    mean_current_A: float | None
+    peak_current_A: float | None
+    peak_start_current_A: float | None
+    longest_start_s: float | None
+    trips: dict[str, int]
+    counted_starts: int | None
+    counted_running_hours: float | None
+    known_hours: float | None
+    remarks: Listed[str]
+
+
 class LoadProfile(Document):
     """How a motor was loaded. All is null, or empty, before a service has read the motors file.
 
@@ -75,6 +99,7 @@ class LoadProfile(Document):
     starts: int | None = None
     limits: Listed[LimitHours] = Field(default_factory=list)
     thermal: ThermalState | None = None
+    relay_statistics: RelayStatistics | None = None
 
 
 def load_document(load: MotorLoad) -> LoadProfile:
@@ -99,8 +124,35 @@ def load_document(load: MotorLoad) -> LoadProfile:
                 for one in load.limits
             ],
             "thermal": _thermal(load),
+            "relay_statistics": _relay(load),
         }
     )
+
+
+def _relay(load: MotorLoad) -> dict[str, object] | None:
+    if load.relay is None:
+        return None
+    told, metered = load.relay.told, load.relay.metered
+    return {
+        "time": told.time_ns,
+        "since_time": told.since_ns,
+        "running_hours": _hours(told.running_s),
+        "standing_hours": _hours(told.stopped_s),
+        "starts": told.starts,
+        "mean_current_A": told.mean_current_A,
+        "peak_current_A": told.peak_current_A,
+        "peak_start_current_A": told.peak_start_current_A,
+        "longest_start_s": told.longest_start_s,
+        "trips": dict(told.trips),
+        "counted_starts": load.relay.counted_starts,
+        "counted_running_hours": None if metered is None else metered.running_hours,
+        "known_hours": None if metered is None else metered.known_hours,
+        "remarks": load.relay.remarks,
+    }
+
+
+def _hours(seconds: float | None) -> float | None:
+    return None if seconds is None else seconds / SECONDS_PER_HOUR
 
 
 def _thermal(load: MotorLoad) -> dict[str, object]:

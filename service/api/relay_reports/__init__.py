@@ -1,1 +1,1 @@
-"""Text reports of relays that people bring: starts and load profiles."""
+"""Text reports of relays that people bring: starts, load profiles, statistics and events."""

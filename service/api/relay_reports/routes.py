@@ -16,10 +16,12 @@ from service.api.document import Name
 from service.api.limits.body_limits import MAX_REPORT_BYTES, REPORT_TYPE
 from service.api.problems import ProblemError, problems
 from service.api.relay_reports.clocks import RelayClock
-from service.api.relay_reports.errors import refused, unreadable
+from service.api.relay_reports.errors import unreadable
+from service.api.relay_reports.events import keep_events
 from service.api.relay_reports.load_profile import PowerUnit, keep_load_profile
 from service.api.relay_reports.schemas import ReportImport
 from service.api.relay_reports.starts import keep_starts
+from service.api.relay_reports.statistics import keep_statistics
 
 router = APIRouter(prefix="/motors/{name}", tags=["motors"])
 
@@ -47,13 +49,13 @@ def import_report(
             media_type=REPORT_TYPE,
             min_length=1,
             max_length=MAX_REPORT_BYTES,
-            description="A report (MSR, LDP), as the relay sends it or as a terminal showed it.",
+            description="A report (MSR, LDP, MOT, SER), as the relay sends it or as a terminal showed it.",
         ),
     ],
     date_order: OrderOfDates = DateOrder.MDY,
     power_unit: UnitOfPower = None,
 ) -> ReportImport:
-    """Keep what a text report of a motor's relay tells: its starts, or its load over time."""
+    """Keep what a text report of a motor's relay tells: starts, load, statistics, events."""
     context.require_motor(name)
     motor = context.motors.get(name)
     if motor is None:
@@ -80,7 +82,11 @@ def import_report(
                     now_ns=now_ns,
                 )
                 return ReportImport(kind=kind, load_profile=rows)
+            case ReportKind.MOTOR_STATISTICS:
+                told = keep_statistics(repository, name, report, date_order, clock, by=caller, now_ns=now_ns)
+                return ReportImport(kind=kind, motor_statistics=told)
+            case ReportKind.SEQUENCE_OF_EVENTS:
+                events = keep_events(repository, name, report, date_order, clock, by=caller, now_ns=now_ns)
+                return ReportImport(kind=kind, events=events)
     except ReportError as error:
         raise unreadable(error) from error
-    message = f"found a report {kind}; expected motor starts (MSR) or a load profile (LDP)"
-    raise refused("body", message)

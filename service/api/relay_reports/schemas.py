@@ -51,9 +51,32 @@ class LoadImport(Document):
     left_out: Listed[LeftOutColumn]
 
 
+class StatisticsImport(Document):
+    """Whether the statistics of a motor were kept; they are where they were not known."""
+
+    time: Time
+    since_time: Time | None
+    added: bool
+
+
+class EventImport(Document):
+    """What became of a sequence of events.
+
+    added: starts, stops and trips that were not known.  ahead: those whose time is yet to come.
+    left_out: elements that tell none of these, the first fifty.
+    """
+
+    added: int
+    known: int
+    ahead: int
+    left_out: Listed[str]
+
+
 class ReportImport(Document):
     """What became of a report, by its kind; the other fields are null."""
 
     kind: ReportKind
     motor_starts: StartImport | None = None
     load_profile: LoadImport | None = None
+    motor_statistics: StatisticsImport | None = None
+    events: EventImport | None = None

@@ -77,7 +77,9 @@ def starts(
 @commands.command()
 def import_report(
     motor: MotorName,
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="A report of its relay as text: MSR or LDP.")],
+    file: Annotated[
+        Path, typer.Argument(metavar="FILE", help="A report of its relay as text: MSR, LDP, MOT or SER.")
+    ],
     url: Url = DEFAULT_URL,
     date_order: Annotated[
         DateOrder, typer.Option(help="Order of the report's dates: the relay's setting DATE_F.")
@@ -89,7 +91,7 @@ def import_report(
     *,
     as_json: Json = False,
 ) -> None:
-    """Give the service a text report of a motor's relay: it keeps the starts or the load that it tells."""
+    """Give the service a text report of a motor's relay: starts, load, statistics or events."""
     from service.cli.relay_report import import_report as bring
 
     bring(url, motor, file, date_order=date_order, power_unit=power_unit, as_json=as_json)

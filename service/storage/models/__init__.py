@@ -39,6 +39,7 @@ from service.storage.models.recordings import (
     RecordingRow,
     RemoteRecordRow,
 )
+from service.storage.models.relay_reports import RelayEventRow, RelayStatisticsRow
 from service.storage.models.relays import (
     GatewayRow,
     LeaseRow,
@@ -91,7 +92,9 @@ __all__ = [
     "RecordingFileRow",
     "RecordingRequestRow",
     "RecordingRow",
+    "RelayEventRow",
     "RelayFindingsRow",
+    "RelayStatisticsRow",
     "RemoteRecordRow",
     "RotorFindingRow",
     "SiteRow",

@@ -33,6 +33,7 @@ from service.storage.states import (
     RecordingRequestState,
     RecordingSource,
     RecordingState,
+    RelayEventKind,
     StartSource,
 )
 
@@ -101,6 +102,7 @@ class Base(DeclarativeBase):
         RecordingState: _words(RecordingState),
         RecordingSource: _words(RecordingSource),
         MeasurementSource: _words(MeasurementSource),
+        RelayEventKind: _words(RelayEventKind),
         StartSource: _words(StartSource),
         DeletedBy: _words(DeletedBy),
         JobState: _words(JobState),

@@ -68,6 +68,7 @@ from service.storage.records.recordings import (
     Series,
     SeriesHistory,
 )
+from service.storage.records.relay_reports import MeteredHours, RelayEvent
 from service.storage.records.relays import (
     ClockReading,
     GatewayEntry,
@@ -135,6 +136,7 @@ __all__ = [
     "LinkTraffic",
     "LoginLimits",
     "Measurement",
+    "MeteredHours",
     "MotorEntry",
     "MotorHealth",
     "MotorVersion",
@@ -152,6 +154,7 @@ __all__ = [
     "RecordingEntry",
     "RecordingFile",
     "RecordingRequest",
+    "RelayEvent",
     "RelayFindings",
     "RemoteRecord",
     "ReportOutcome",

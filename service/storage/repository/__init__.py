@@ -46,6 +46,7 @@ from service.storage.repository.relays.leases import LeaseRows
 from service.storage.repository.relays.links import LinkRows
 from service.storage.repository.relays.quarantines import QuarantineRows
 from service.storage.repository.relays.remote_records import RemoteRecordRows
+from service.storage.repository.relays.reports import RelayReportRows
 from service.storage.repository.state_counts import StateCounts
 
 
@@ -84,6 +85,7 @@ class Repository(
     StateCounts,
     MeasurementRows,
     LoadProfileRows,
+    RelayReportRows,
     BaselineRows,
     DeletionRows,
     FolderRows,

@@ -61,7 +61,8 @@ def test_motor_statistics_are_told_in_units() -> None:
     assert (found.mean_current_A, found.peak_current_A, found.peak_start_current_A) == (1.21, 1.74, 8.90)
     assert found.longest_start_s == 0.42
     assert found.trips == {"overcurrent": 1, "thermal overload": 0}
-    assert read_motor_statistics("Number of starts   3\n").running_s is None
+    assert found.time_ns == nanoseconds("2026-03-29T10:15:30.125Z")
+    assert read_motor_statistics(HEAD + "Number of starts   3\n").running_s is None
 
 
 def test_a_start_report_has_every_start_with_its_curve() -> None:
@@ -181,6 +182,7 @@ Reader = Callable[[str | bytes], object]
         ),
         (read_load_profile, "IA TIME DATE\n", "heading: expected TIME behind DATE"),
         (read_motor_statistics, HEAD, '"Running time" or "Number of starts", found neither'),
+        (read_motor_statistics, MOT.replace(HEAD, ""), "expected the relay's clock, as Date: and Time:"),
         (read_motor_statistics, MOT.replace(" 17", " 1.5"), "expected a whole number"),
         (read_motor_statistics, MOT.replace("120:05:30", "120:75"), "expected hours such as"),
         (read_motor_statistics, MOT + "Number of starts   4\n", "expected each entry once"),

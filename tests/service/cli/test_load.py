@@ -7,12 +7,15 @@ from pathlib import Path
 import httpx
 import pytest
 
+from core.relay_reports import read_motor_statistics
 from service.api import ApiContext, create_app
 from service.cli.app import main
 from service.configuration.settings import Settings
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
+from service.storage.records import Actor
 from testing.service.metered_days import meter_a_day
+from tests.core.relay_reports.examples import MOT
 from tests.service.api.serving import serving
 from tests.service.fixtures import database_url, engine, repository, store
 
@@ -39,6 +42,19 @@ def test_load_in_words_and_as_json(
 
     assert main(["load", "PUMP-A1", "--days", "7", "--json", "--url", str(client.base_url)]) == 0
     assert json.loads(capsys.readouterr().out)["standing_hours"] == 6.0
+
+
+def test_the_relay_s_own_statistics(
+    client: httpx.Client, repository: Repository, capsys: pytest.CaptureFixture[str]
+) -> None:
+    meter_a_day(repository)
+    told = read_motor_statistics(MOT)
+    repository.add_relay_statistics("PUMP-A1", told, by=Actor("ada", "tests"), now_ns=1)
+    assert main(["load", "PUMP-A1", "--url", str(client.base_url)]) == 0
+    output = " ".join(capsys.readouterr().out.split())
+    assert "17; counted here: 0" in output
+    assert "overcurrent 1" in output
+    assert "has measured nothing in that time" in output
 
 
 def test_a_motor_of_which_nothing_is_known(client: httpx.Client, capsys: pytest.CaptureFixture[str]) -> None:

@@ -21,7 +21,7 @@ from testing.service.job_runner import RUNNER
 from testing.service.plants import NOW_NS, SECOND_NS, fault, healthy, motor
 from testing.service.small_record import CFG, DAT
 from testing.service.starts import START, RecordedStarts
-from tests.core.relay_reports.examples import LDP, MSR
+from tests.core.relay_reports.examples import LDP, MOT, MSR, SER
 from tests.service.api.serving import serving
 from tests.service.fixtures import database_url, engine, repository, store
 
@@ -105,6 +105,12 @@ def test_starts_of_a_report(mcc: Mcc, tmp_path: Path) -> None:
     assert left_out == "column P: left out: no report tells its unit: say power_unit, W or kW"
     again = mcc("import-report", "PUMP-A1", str(report), "--power-unit", "W")
     assert "rows of quarters of an hour that are known already: 2" in again
+    report.write_text(MOT, encoding="ascii")
+    assert "10:15:30 UTC: kept; mcc load shows them" in mcc("import-report", "PUMP-A1", str(report))
+    report.write_text(SER, encoding="ascii")
+    events, others = mcc("import-report", "PUMP-A1", str(report)).splitlines()
+    assert events == "starts, stops and trips that were not known: 1"
+    assert others == "other elements, left out: RUNNING, Relay Powered Up"
     report.write_text(MSR.replace("7.10", "x"), encoding="ascii")
     refused = " ".join(mcc("import-report", "PUMP-A1", str(report), ends=1).split())
     assert "line 13, I(A): expected a number, found 'x'" in refused

@@ -159,7 +159,7 @@ def test_what_cannot_be_kept_is_refused(client: httpx.Client, report: str, told:
     assert measured(client) == []
 
 
-@settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
     st.sampled_from([LDP.encode(), CLDP, profile(4).encode()]),
     st.integers(0, 500),

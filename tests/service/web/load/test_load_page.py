@@ -2,8 +2,11 @@
 
 import httpx
 
+from core.relay_reports import read_motor_statistics
 from service.storage import Repository
+from service.storage.records import Actor
 from testing.service.metered_days import meter_a_day
+from tests.core.relay_reports.examples import MOT
 from tests.service.web.pages import addresses, page, words
 
 HERE = "/motors/PUMP-A1/load"
@@ -22,6 +25,20 @@ def test_the_page_shows_profile_limits_and_heat(client: httpx.Client, repository
     assert "no two records" in words(document, "#heat-title ~ dl dd")[-1]
     assert addresses(document, "main p a")[1:] == [f"{HERE}?days={days}" for days in (1, 7, 90)]
     assert words(document, "figure svg title")
+
+
+def test_the_relay_s_statistics_stand_beside_the_service_s_counts(
+    client: httpx.Client, repository: Repository
+) -> None:
+    meter_a_day(repository)
+    assert not page(client.get(HERE)).cssselect("#relay-title")
+    told = read_motor_statistics(MOT)
+    repository.add_relay_statistics("PUMP-A1", told, by=Actor("ada", "tests"), now_ns=1)
+    document = page(client.get(HERE))
+    facts = words(document, "#relay-title ~ dl dd")
+    assert facts[0] == "17 0 counted here"
+    assert facts[-2:] == ["1", "0"]
+    assert "the service has measured nothing in that time" in words(document, "#relay-title ~ p")[-1]
 
 
 def test_a_motor_that_no_service_knows_yet_and_one_that_is_not_there(client: httpx.Client) -> None:

@@ -20,10 +20,10 @@ from service.condition.wording import KINDS, finding
 from service.plant import MeteredQuantity
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
-from service.storage.records import Actor, ConditionPoint, Role, Sample
+from service.storage.records import Actor, ConditionPoint, RelayEvent, Role, Sample
 from service.storage.records.alarms import AlarmPlace, AlarmSpec
 from service.storage.records.history import ThinnedTrend
-from service.storage.states import AlarmKind
+from service.storage.states import AlarmKind, RelayEventKind
 from service.web.motor.trend import trend_chart
 from testing.service.accounts import token_of
 from testing.service.conditions import DRIFTING, FAULT, HEALTHY
@@ -314,6 +314,22 @@ def test_starts_and_trips_are_marked_in_the_trend(
     added.add(None, at_ns=at_ns)
     marks = chart(page(client.get(HERE)))["marks"]
     assert marks == [{"x": pytest.approx(at_ns / 1e9, abs=0.01), "label": "start", "tone": "muted"}]
+
+
+def test_a_trip_of_the_relay_s_sequence_is_marked_and_one_that_is_recorded_is_not_doubled(
+    client: httpx.Client, repository: Repository, store: RecordingStore
+) -> None:
+    record(repository, store)
+    at_ns = time.time_ns() - 3 * 3600 * NANOSECONDS_PER_SECOND
+    RecordedStarts(repository, store).add(None, at_ns=at_ns)
+    told = [
+        RelayEvent(RelayEventKind.START, at_ns + 2 * NANOSECONDS_PER_SECOND),
+        RelayEvent(RelayEventKind.TRIP, at_ns + 60 * NANOSECONDS_PER_SECOND),
+        RelayEvent(RelayEventKind.STOP, at_ns + 61 * NANOSECONDS_PER_SECOND),
+    ]
+    repository.add_relay_events(MOTOR, told, by=ADA, now_ns=time.time_ns())
+    marks = chart(page(client.get(HERE)))["marks"]
+    assert [one["label"] for one in marks] == ["start", "trip", "stop"]
 
 
 def test_a_kind_that_is_named_is_told_with_its_phase() -> None:

@@ -1,0 +1,51 @@
+"""Sequences of events (SER): starts, stops and trips become marks of the motor."""
+
+from collections.abc import Mapping
+from typing import Final
+
+from core.relay_reports import read_sequence_of_events
+from core.relay_reports.clock_times import DateOrder
+from service.api.relay_reports.clocks import LATER, RelayClock
+from service.api.relay_reports.errors import refused
+from service.api.relay_reports.schemas import EventImport
+from service.storage import Repository
+from service.storage.records import Actor, RelayEvent
+from service.storage.states import RelayEventKind
+
+ELEMENTS: Final[Mapping[str, RelayEventKind]] = {
+    "STARTING": RelayEventKind.START,
+    "STOPPED": RelayEventKind.STOP,
+    "TRIP": RelayEventKind.TRIP,
+}
+"""What it means that an element of the relay word is asserted."""
+MOST_NAMED: Final = 50
+
+
+def keep_events(
+    repository: Repository,
+    motor: str,
+    report: bytes,
+    date_order: DateOrder,
+    clock: RelayClock,
+    *,
+    by: Actor,
+    now_ns: int,
+) -> EventImport:
+    """Keep the starts, stops and trips of a report. Raises ReportError, ProblemError."""
+    changes = read_sequence_of_events(report, date_order=date_order)
+    told = [
+        RelayEvent(ELEMENTS[change.element], clock.utc_ns(change.time_ns))
+        for change in changes
+        if change.asserted and change.element in ELEMENTS
+    ]
+    events = [event for event in told if not clock.is_ahead(event.time_ns)]
+    if told and not events:
+        raise refused("body", f"none of {len(told)} events can be kept: {LATER}")
+    added = repository.add_relay_events(motor, events, by=by, now_ns=now_ns)
+    others = sorted({change.element for change in changes} - set(ELEMENTS))
+    return EventImport(
+        added=added,
+        known=len(set(events)) - added,
+        ahead=len(told) - len(events),
+        left_out=others[:MOST_NAMED],
+    )
