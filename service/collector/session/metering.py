@@ -33,8 +33,6 @@ class Metering:
 
     A value that the model promises and the relay does not have is left out until the next connection. A value
     that the relay has and cannot give is left out of that sample. Both are logged.
-
-    takes_s: how long the latest sample took.
     """
 
     def __init__(
@@ -54,7 +52,7 @@ class Metering:
         self._logged: set[Measurand] = set()
         self._next_s = 0.0
         self._next_statistics_s = 0.0
-        self.takes_s = 0.0
+        self._took_s = {True: 0.0, False: 0.0}
 
     def begin(self, measurands: tuple[Measurand, ...] | None = None) -> None:
         """Begin a new connection. measurands: what the relay offers; None where what is known still holds."""
@@ -70,6 +68,13 @@ class Metering:
         wanted = self._period_s > 0 and self._offered
         return max(0.0, self._next_s - time.monotonic()) if wanted else math.inf
 
+    def takes_s(self) -> float:
+        """Return how long the next sample takes, by the latest of its kind [s]; 0 before the first."""
+        return self._took_s[self._has_statistics_due()]
+
+    def _has_statistics_due(self) -> bool:
+        return time.monotonic() >= self._next_statistics_s
+
     def sample(self, client: Client) -> None:
         """Take a sample now. Raises MmsError (the link)."""
         began_s = time.monotonic()
@@ -77,11 +82,11 @@ class Metering:
         if self._next_s < time.monotonic():
             # What was missed, because a long record was pulled meanwhile, is not made up for.
             self._next_s = time.monotonic() + self._period_s
-        with_statistics = time.monotonic() >= self._next_statistics_s
+        with_statistics = self._has_statistics_due()
         if with_statistics:
             self._next_statistics_s = time.monotonic() + STATISTICS_PERIOD_S
         values = self._values(client, with_statistics=with_statistics)
-        self.takes_s = time.monotonic() - began_s
+        self._took_s[with_statistics] = time.monotonic() - began_s
         if values:
             self._on_sample(Sample(self._motor, time.time_ns(), values))
 

@@ -3,6 +3,7 @@
 What a relay does wrong ends with its own session: the link is down with the reason, and is tried again.
 """
 
+import math
 import time
 from collections.abc import Callable
 from contextlib import ExitStack, nullcontext
@@ -262,7 +263,7 @@ class RelaySession:
             if due_in_s <= 0:
                 self._triggers.trigger_again(client)
                 continue
-            if self._metering is not None and self._metering.takes_s < due_in_s:
+            if self._metering is not None and self._metering.takes_s() < due_in_s:
                 due_in_s = min(due_in_s, self._metering.due_in_s())
                 if due_in_s <= 0:
                     self._metering.sample(client)
@@ -282,10 +283,11 @@ class RelaySession:
 
     def _work(self, client: Client) -> bool:
         """Do one round: reports, directory, requests. Returns whether a record is on its way."""
-        self._subscription.retry_if_due(client)
+        until_trigger_s = self._triggers.due_in_s()
+        if until_trigger_s == math.inf:
+            self._subscription.retry_if_due(client)
         self._handle_reports()
         self._triggers.recall()
-        until_trigger_s = self._triggers.due_in_s()
         if until_trigger_s < LISTING_PAUSE * self._directory.listing_s:
             return True
         expected = time.monotonic() < self._record_expected_until_s

@@ -231,3 +231,16 @@ def test_a_value_that_is_refused_ends_no_visit(bench: Bench, relay: ScriptedRela
         thread.join(15)
     assert bench.repository.link_figures(NAME).connections == 1
     assert not any("ia_A" in sample.values for sample in samples)
+
+
+def test_how_long_a_sample_takes_is_told_by_the_latest_with_or_without_statistics(
+    bench: Bench, metered: Relay
+) -> None:
+    metering = Metering(metered, MOTOR, period_s=0.1, on_sample=lambda _sample: None)
+    assert metering.takes_s() == 0.0
+    with Client.connect("127.0.0.1", metered.port) as client:
+        began_s = time.monotonic()
+        metering.sample(client)
+        assert metering.takes_s() == 0.0, "that one had statistics, the next one has none"
+        metering.sample(client)
+    assert 0.0 < metering.takes_s() < time.monotonic() - began_s
