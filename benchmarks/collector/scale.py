@@ -93,11 +93,14 @@ def broken_limits(seen: Seen, minutes: float, period_minutes: float) -> list[str
     return broken
 
 
-def measure(seen: Seen, relays: int, minutes: float, period_minutes: float) -> Iterator[str]:
+def measure(
+    seen: Seen, relays: int, minutes: float, period_minutes: float, relays_per_gateway: int | None = None
+) -> Iterator[str]:
     with tempfile.TemporaryDirectory(prefix="statorwatch-scale-") as name:
         directory = Path(name)
         scd, motors = _files(directory, relays)
-        with _simulated(scd, directory) as simulator, _served(directory, scd, motors) as service:
+        own = {} if relays_per_gateway is None else {"MCC_RELAYS_PER_GATEWAY": str(relays_per_gateway)}
+        with _simulated(scd, directory) as simulator, _served(directory, scd, motors, own) as service:
             begun_s = time.monotonic()
             with ServiceClient(service.url) as client:
                 if not eventually(lambda: _links_up(client) == relays, START_LIMIT_S):
@@ -105,10 +108,12 @@ def measure(seen: Seen, relays: int, minutes: float, period_minutes: float) -> I
                 up_s = time.monotonic() - begun_s
                 yield f"{relays} relays: all links up {up_s:.1f} s after the service was ready"
                 before_s, simulator_s = _cpu_s(service), cpu_s(simulator)
+                yield f"until then {before_s:.1f} s of CPU; {_gateways(service)}"
                 _watch(seen, service, client, directory / "relays", minutes, period_minutes)
                 spent_s, simulated_s = _cpu_s(service) - before_s, cpu_s(simulator) - simulator_s
                 yield from _told(seen, minutes, spent_s, simulated_s)
                 yield from _outcome(client, seen)
+                yield f"at the end {_gateways(service)}"
     yield LIMITS
 
 
@@ -203,6 +208,17 @@ def _processes(service: Service) -> list[int]:
     return [service.process_id, *descendants(service.process_id)]
 
 
+def _gateways(service: Service) -> str:
+    """What the gateway processes take, in words."""
+    gateways = [
+        process_id
+        for process_id in _processes(service)
+        if b"service.collector" in Path(f"/proc/{process_id}/cmdline").read_bytes()
+    ]
+    memory, spent_s = sum(map(resident_mb, gateways)), sum(map(cpu_s, gateways))
+    return f"{len(gateways)} gateways of {memory:.0f} MB in all, {spent_s:.1f} s of CPU"
+
+
 def _cpu_s(service: Service) -> float:
     return sum(cpu_s(process_id) for process_id in _processes(service))
 
@@ -258,8 +274,8 @@ def _simulated(scd: Path, directory: Path) -> Iterator[int]:
 
 
 @contextmanager
-def _served(directory: Path, scd: Path, motors: Path) -> Iterator[Service]:
-    settings: Mapping[str, str] = {"MCC_MOTORS": str(motors), "MCC_POLL_PERIOD_S": str(POLL_PERIOD_S)}
+def _served(directory: Path, scd: Path, motors: Path, own: Mapping[str, str]) -> Iterator[Service]:
+    settings = {"MCC_MOTORS": str(motors), "MCC_POLL_PERIOD_S": str(POLL_PERIOD_S), **own}
     processes.START_LIMIT_S = START_LIMIT_S
     with processes.running_service(directory, scd, **settings) as service:
         yield service
@@ -270,9 +286,13 @@ def main() -> int:
     parser.add_argument("--relays", type=int, default=200)
     parser.add_argument("--minutes", type=float, default=30.0)
     parser.add_argument("--period-minutes", type=float, default=5.0)
+    parser.add_argument("--relays-per-gateway", type=int, help="the setting; its default where left out")
     arguments = parser.parse_args()
     seen = Seen()
-    for line in measure(seen, arguments.relays, arguments.minutes, arguments.period_minutes):
+    lines = measure(
+        seen, arguments.relays, arguments.minutes, arguments.period_minutes, arguments.relays_per_gateway
+    )
+    for line in lines:
         print(line, flush=True)
     broken = broken_limits(seen, arguments.minutes, arguments.period_minutes)
     for line in broken:

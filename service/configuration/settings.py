@@ -95,7 +95,7 @@ class Settings(BaseSettings):
     audit: AuditSettings = Field(default_factory=AuditSettings)
 
     relays: dict[str, RelayAccess] = Field(default_factory=dict)
-    relays_per_gateway: int = Field(default=100, ge=1, le=1000)
+    relays_per_gateway: int = Field(default=250, ge=1, le=1000)
     lease_s: float = Field(default=30.0, ge=1, le=600)
     events_directory: str = "EVENTS"
     connect_timeout_s: float = Field(default=5.0, ge=0.01, le=600)

@@ -42,6 +42,9 @@ from service.storage.states import AlarmKind
 
 log = structlog.get_logger(__name__)
 
+ANNOUNCED_S = 1.0
+"""A record that is fetched within this time is not announced before: it appears as it is stored."""
+
 PULL_MARGIN = 2.0
 """A pull may take so many times as long as the latest one lets expect."""
 
@@ -268,7 +271,8 @@ class RecordDirectory:
                 sizes = tuple(file.size for file in state.record.files)
                 takes_s = PULL_MARGIN * self._takes_s(sum(sizes)) + self.listing_s
                 if time.monotonic() + takes_s > until_s:
-                    break
+                    self._keep_all(client, batch, claim)
+                    return ()
                 too_large = max(sizes) > self._max_file_bytes
                 if not too_large and not self._allowance.allows(sizes, time.time_ns()):
                     self._keep_all(client, batch, claim)
@@ -290,7 +294,8 @@ class RecordDirectory:
 
     def _fetch(self, batch: Batch, state: RecordState, claim: ClaimRequest) -> None:
         """Fetch one record. Where that fails, refuse it or leave it for the next scan."""
-        self._ledger.announce(state)
+        if self._takes_s(state.record.size_bytes) > ANNOUNCED_S:
+            self._ledger.announce(state)
         began_s = time.monotonic()
         try:
             batch.fetch(state)
@@ -330,6 +335,7 @@ class RecordDirectory:
     def _fail(self, state: RecordState, error: Exception, claim: ClaimRequest) -> None:
         """Note a failed attempt. Raises the error again where it ends the visit."""
         failure = failure_of(error)
+        self._ledger.announce(state)
         self._note_failure(state, failure, error, claim)
         if failure in VISIT_ENDS:
             raise error

@@ -43,6 +43,9 @@ REFUSALS = (
 """By these errors the relay refuses. ValueError stands for an override that is no reference. Errors of the
 link leave a request as it is until its time limit."""
 
+RECALLED_FOR_S = 1.0
+"""So long a new record may rely on the requests that were looked up last."""
+
 HOLD_S = 0.05
 """The remote bit stays set so long: relays look at their equations every quarter cycle, some less often."""
 
@@ -82,6 +85,7 @@ class TriggerQueue:
         self._outstanding: RecordingRequest | None = None
         self._next: RecordingRequest | None = None
         self._claimed = False
+        self._recalled_s = 0.0
         self._operated_for: str | None = None
         self._listed_before: frozenset[str] = frozenset()
         self._held_up_since_s: float | None = None
@@ -116,6 +120,7 @@ class TriggerQueue:
 
     def recall(self) -> None:
         """Look up which request, if any, waits for a record of this relay, and which one is next."""
+        self._recalled_s = time.monotonic()
         requests = self._repository.open_recording_requests(self._relay.name)
         self._outstanding = next((each for each in requests if each.state in IN_THE_RELAY), None)
         self._next = next((each for each in requests if each.state is RecordingRequestState.REQUESTED), None)
@@ -135,7 +140,9 @@ class TriggerQueue:
 
     def claim(self, record_name: str) -> str | None:
         """Return the request a new record belongs to; both are then written down in one transaction."""
-        self.recall()
+        # The record before this one may have been what a request waited for, and a fetch may take minutes.
+        if self._claimed or time.monotonic() > self._recalled_s + RECALLED_FOR_S:
+            self.recall()
         self._claimed = True
         self._deadlines.gave_a_record()
         if self._series is not None:
