@@ -24,10 +24,11 @@ def test_without_files_it_tells_a_whole_cage_from_a_broken_bar(
     assert broken.startswith("fault: ")
 
 
-def test_it_tells_what_half_a_second_of_a_whole_cage_would_show(
+def test_it_tells_how_long_a_record_it_takes_where_half_a_second_is_too_short(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     folder = EXAMPLE.parent
     monkeypatch.setattr(sys, "argv", [EXAMPLE.name, str(folder / "RUNNING.CFG"), str(folder / "motor.toml")])
     (line,) = _printed(capsys)
-    assert re.match(r"healthy: no uneven rotor: this record would show -\d+\.\d dB$", line), line
+    # The simulated motor's slip is 2.49 %. What its shorted turns lose would pass for a higher one.
+    assert re.match(r"unsupported: the sidebands lie 2\.[45]\d Hz beside .*: it takes 0\.\d s", line), line

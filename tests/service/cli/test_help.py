@@ -5,7 +5,7 @@ import pytest
 from service.cli.app import app, main
 
 COMMANDS = {
-    command.name or command.callback.__name__: command.callback.__doc__ or ""
+    command.name or command.callback.__name__.replace("_", "-"): command.callback.__doc__ or ""
     for group in app.registered_groups
     for command in (group.typer_instance.registered_commands if group.typer_instance else ())
     if command.callback is not None
