@@ -144,37 +144,22 @@ class EventFiles:
     def _staged(self, record: _Written) -> list[Path]:
         """Write the record under `staging` in all formats; return its files in their order."""
         for written in self._formats:
-            self._write(
-                written,
-                record.stem,
-                record.recording,
-                record.header,
-                record.summary,
-                record.utc_offset_min,
-            )
+            self._write(written, record)
         files = [self._staging / f"{record.stem}{suffix}" for suffix in _SUFFIXES_IN_ORDER]
         return [file for file in files if file.exists()]
 
-    def _write(
-        self,
-        written: RecordFormat,
-        stem: str,
-        recording: Recording,
-        header: str,
-        summary: EventSummary,
-        utc_offset_min: int,
-    ) -> None:
+    def _write(self, written: RecordFormat, record: _Written) -> None:
         if written.kind == "CEV":
-            write_cev(self._staging / f"{stem}.CEV", recording, summary)
+            write_cev(self._staging / f"{record.stem}.CEV", record.recording, record.summary)
             return
         suffix = ".CFF" if written.kind == "CFF" else ".CFG"
         write_comtrade(
-            self._staging / f"{stem}{suffix}",
-            recording,
-            header_text=header,
+            self._staging / f"{record.stem}{suffix}",
+            record.recording,
+            header_text=record.header,
             revision=written.revision,
             data_format=written.data_format,
-            utc_offset_min=utc_offset_min,
+            utc_offset_min=record.utc_offset_min,
         )
 
     def _discard(self, number: int) -> None:

@@ -9,11 +9,10 @@ from core.machines.parameters import Motor
 from core.quality import rated_current_A
 from core.relay_reports import MotorStatistics
 from core.time_stamps import rfc3339
-from core.units import NANOSECONDS_PER_DAY
+from core.units import NANOSECONDS_PER_DAY, SECONDS_PER_HOUR
 from service.storage import Repository
 from service.storage.records import MeteredHours
 
-SECONDS_PER_HOUR: Final = 3600.0
 SAME_SHARE: Final = 0.02
 SAME_HOURS: Final = 0.5
 """Running hours that are no farther apart agree: those of the service are quarters of an hour."""

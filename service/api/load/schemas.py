@@ -2,10 +2,10 @@
 
 from pydantic import Field
 
+from core.units import SECONDS_PER_HOUR
 from service.api.document import Document, Listed
 from service.api.times import Time
 from service.condition.metered_load import MotorLoad
-from service.condition.relay_statistics import SECONDS_PER_HOUR
 
 Interval = tuple[float, float]
 

@@ -4,12 +4,11 @@ from collections.abc import Mapping
 from typing import Final
 
 from core.relay_reports import read_sequence_of_events
-from core.relay_reports.clock_times import DateOrder
-from service.api.relay_reports.clocks import LATER, RelayClock
+from service.api.relay_reports.brought import LATER, BroughtReport
 from service.api.relay_reports.errors import refused
 from service.api.relay_reports.schemas import EventImport
 from service.storage import Repository
-from service.storage.records import Actor, RelayEvent
+from service.storage.records import RelayEvent
 from service.storage.states import RelayEventKind
 
 ELEMENTS: Final[Mapping[str, RelayEventKind]] = {
@@ -21,27 +20,18 @@ ELEMENTS: Final[Mapping[str, RelayEventKind]] = {
 MOST_NAMED: Final = 50
 
 
-def keep_events(
-    repository: Repository,
-    motor: str,
-    report: bytes,
-    date_order: DateOrder,
-    clock: RelayClock,
-    *,
-    by: Actor,
-    now_ns: int,
-) -> EventImport:
+def keep_events(repository: Repository, motor: str, brought: BroughtReport) -> EventImport:
     """Keep the starts, stops and trips of a report. Raises ReportError, ProblemError."""
-    changes = read_sequence_of_events(report, date_order=date_order)
+    changes = read_sequence_of_events(brought.text, date_order=brought.date_order)
     told = [
-        RelayEvent(ELEMENTS[change.element], clock.utc_ns(change.time_ns))
+        RelayEvent(ELEMENTS[change.element], brought.utc_ns(change.time_ns))
         for change in changes
         if change.asserted and change.element in ELEMENTS
     ]
-    events = [event for event in told if not clock.is_ahead(event.time_ns)]
+    events = [event for event in told if not brought.is_ahead(event.time_ns)]
     if told and not events:
         raise refused("body", f"none of {len(told)} events can be kept: {LATER}")
-    added = repository.add_relay_events(motor, events, by=by, now_ns=now_ns)
+    added = repository.add_relay_events(motor, events, by=brought.by, now_ns=brought.now_ns)
     others = sorted({change.element for change in changes} - set(ELEMENTS))
     return EventImport(
         added=added,

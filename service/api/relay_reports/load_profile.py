@@ -5,13 +5,12 @@ from enum import StrEnum
 from typing import Final
 
 from core.relay_reports import LoadRows, read_load_profile
-from core.relay_reports.clock_times import DateOrder
-from service.api.relay_reports.clocks import LATER, RelayClock
+from service.api.relay_reports.brought import LATER, BroughtReport
 from service.api.relay_reports.errors import refused
 from service.api.relay_reports.schemas import LeftOutColumn, LoadImport
 from service.plant import MeteredQuantity
 from service.storage import Repository
-from service.storage.records import Actor, Sample
+from service.storage.records import Sample
 
 
 class PowerUnit(StrEnum):
@@ -43,24 +42,16 @@ _NO_PLACE: Final = "it is none of the quantities that the service keeps"
 
 
 def keep_load_profile(
-    repository: Repository,
-    motor: str,
-    report: bytes,
-    date_order: DateOrder,
-    clock: RelayClock,
-    *,
-    power_unit: PowerUnit | None,
-    by: Actor,
-    now_ns: int,
+    repository: Repository, motor: str, brought: BroughtReport, power_unit: PowerUnit | None
 ) -> LoadImport:
     """Keep the rows of a load profile. Raises ReportError, ProblemError."""
-    rows = read_load_profile(report, date_order=date_order)
+    rows = read_load_profile(brought.text, date_order=brought.date_order)
     factors, left_out = _columns(rows, power_unit)
     if rows.values and not factors:
         raise refused("body: heading", f"expected IA_MAG or another quantity, found {', '.join(rows.values)}")
     _refuse_negative(rows, factors)
-    times_ns = [clock.utc_ns(time_ns) for time_ns in rows.time_ns.tolist()]
-    if times_ns and all(map(clock.is_ahead, times_ns)):
+    times_ns = [brought.utc_ns(time_ns) for time_ns in rows.time_ns.tolist()]
+    if times_ns and all(map(brought.is_ahead, times_ns)):
         raise refused("body", f"none of {len(times_ns)} rows can be kept: {LATER}")
     samples = [
         Sample(
@@ -73,7 +64,7 @@ def keep_load_profile(
         )
         for place, time_ns in enumerate(times_ns)
     ]
-    counts = repository.add_load_profile(motor, samples, by=by, now_ns=now_ns)
+    counts = repository.add_load_profile(motor, samples, by=brought.by, now_ns=brought.now_ns)
     return LoadImport(
         added=counts.added,
         known=counts.known,

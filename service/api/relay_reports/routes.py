@@ -3,6 +3,7 @@
 import time
 from http import HTTPStatus
 from typing import Annotated, Final
+from zoneinfo import ZoneInfo
 
 from fastapi import APIRouter, Body, Query
 
@@ -15,7 +16,7 @@ from service.api.context import Context
 from service.api.document import Name
 from service.api.limits.body_limits import MAX_REPORT_BYTES, REPORT_TYPE
 from service.api.problems import ProblemError, problems
-from service.api.relay_reports.clocks import RelayClock
+from service.api.relay_reports.brought import BroughtReport
 from service.api.relay_reports.errors import unreadable
 from service.api.relay_reports.events import keep_events
 from service.api.relay_reports.load_profile import PowerUnit, keep_load_profile
@@ -61,32 +62,20 @@ def import_report(
     if motor is None:
         reason = f"motor {name} is not in the plant's files: its parameters are unknown"
         raise ProblemError(HTTPStatus.CONFLICT, reason)
-    now_ns = time.time_ns()
-    clock = RelayClock(context, name, now_ns)
+    zone = ZoneInfo(context.time_zones.get(name, "UTC"))
+    brought = BroughtReport(report, date_order, zone, by=caller, now_ns=time.time_ns())
     repository = context.repository
     try:
         kind = kind_of_report(report)
         match kind:
             case ReportKind.MOTOR_STARTS:
-                starts = keep_starts(repository, motor, report, date_order, clock, by=caller, now_ns=now_ns)
-                return ReportImport(kind=kind, motor_starts=starts)
+                return ReportImport(kind=kind, motor_starts=keep_starts(repository, motor, brought))
             case ReportKind.LOAD_PROFILE:
-                rows = keep_load_profile(
-                    repository,
-                    name,
-                    report,
-                    date_order,
-                    clock,
-                    power_unit=power_unit,
-                    by=caller,
-                    now_ns=now_ns,
-                )
+                rows = keep_load_profile(repository, name, brought, power_unit)
                 return ReportImport(kind=kind, load_profile=rows)
             case ReportKind.MOTOR_STATISTICS:
-                told = keep_statistics(repository, name, report, date_order, clock, by=caller, now_ns=now_ns)
-                return ReportImport(kind=kind, motor_statistics=told)
+                return ReportImport(kind=kind, motor_statistics=keep_statistics(repository, name, brought))
             case ReportKind.SEQUENCE_OF_EVENTS:
-                events = keep_events(repository, name, report, date_order, clock, by=caller, now_ns=now_ns)
-                return ReportImport(kind=kind, events=events)
+                return ReportImport(kind=kind, events=keep_events(repository, name, brought))
     except ReportError as error:
         raise unreadable(error) from error

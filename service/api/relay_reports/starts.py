@@ -5,14 +5,13 @@ from dataclasses import dataclass
 
 from core.machines.parameters import Motor
 from core.relay_reports import StartReport, read_motor_starts
-from core.relay_reports.clock_times import DateOrder
 from core.starts.errors import NoStartError
 from core.starts.reported import reported_start
-from service.api.relay_reports.clocks import LATER, RelayClock
+from service.api.relay_reports.brought import LATER, BroughtReport
 from service.api.relay_reports.errors import refused
 from service.api.relay_reports.schemas import LeftOutStart, StartImport
 from service.storage import Repository
-from service.storage.records import Actor, ReportedStart
+from service.storage.records import ReportedStart
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,37 +22,28 @@ class _Starts:
     left_out: Sequence[LeftOutStart]
 
 
-def keep_starts(
-    repository: Repository,
-    motor: Motor,
-    report: bytes,
-    date_order: DateOrder,
-    clock: RelayClock,
-    *,
-    by: Actor,
-    now_ns: int,
-) -> StartImport:
+def keep_starts(repository: Repository, motor: Motor, brought: BroughtReport) -> StartImport:
     """Keep the starts of a report. One that is recorded, too, is joined with its recording.
 
     Raises ReportError, ProblemError where no start of a report has any figures.
     """
     frequency_Hz = motor.nameplate.rated_frequency_Hz
-    reports = read_motor_starts(report, date_order=date_order, frequency_Hz=frequency_Hz)
-    found = _measured(motor, reports, clock)
-    imported = repository.add_reported_starts(motor.name, found.starts, by=by, now_ns=now_ns)
+    reports = read_motor_starts(brought.text, date_order=brought.date_order, frequency_Hz=frequency_Hz)
+    found = _measured(motor, reports, brought)
+    imported = repository.add_reported_starts(motor.name, found.starts, by=brought.by, now_ns=brought.now_ns)
     return StartImport.model_validate({"starts": imported, "left_out": found.left_out})
 
 
-def _measured(motor: Motor, reports: Sequence[StartReport], clock: RelayClock) -> _Starts:
+def _measured(motor: Motor, reports: Sequence[StartReport], brought: BroughtReport) -> _Starts:
     starts, left_out = [], []
     for report in reports:
-        time_ns = clock.utc_ns(report.time_ns)
+        time_ns = brought.utc_ns(report.time_ns)
         try:
             examined = reported_start(report, motor)
         except NoStartError as error:
             left_out.append(_left_out(time_ns, str(error)))
             continue
-        if clock.is_ahead(time_ns):
+        if brought.is_ahead(time_ns):
             left_out.append(_left_out(time_ns, LATER))
             continue
         starts.append(ReportedStart(time_ns, examined))

@@ -14,8 +14,8 @@ from service.storage import Repository
 from service.storage.states import JobState
 from service.waveforms.computing import NoAnswerError
 from testing.waiting import wait_until
+from tests.service.jobs.running import running
 from tests.service.jobs.stand_ins import fail_to_start
-from tests.service.jobs.test_runner import running
 
 
 def pid_of(_: None) -> int:

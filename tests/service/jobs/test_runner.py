@@ -4,10 +4,8 @@ import errno
 import multiprocessing.util
 import os
 import signal
-import sqlite3
 import time
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import AbstractContextManager, closing, contextmanager
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -15,58 +13,16 @@ from threading import Event
 
 import pytest
 from sqlalchemy import Engine
-from sqlalchemy.exc import OperationalError
 
-from service.jobs import JobRunner
-from service.jobs.limits import JobLimits
-from service.jobs.worker_process import follow_service
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect
-from service.storage.records import ClaimedJob, RemoteRecord
+from service.storage.records import RemoteRecord
 from service.storage.states import AlarmKind, JobState, RecordingRequestState, RecordingState
-from service.timing.backoff import Backoff
-from testing.service.plants import motor, two_motor_plant
 from testing.waiting import wait_until
-from tests.service.jobs.stand_ins import GO, RESULTS, STRANGE, act_as_told, fail_to_start, prepare_when_told
+from tests.service.jobs.running import LIMITS, add, ended, running
+from tests.service.jobs.stand_ins import GO, RESULTS, STRANGE, fail_to_start, prepare_when_told
 
-LIMITS = JobLimits(workers=2, job_timeout_s=30.0, attempts=2, backoff=Backoff(0.01, 0.1), lease_s=30.0)
 LEASE_S = 1.5
-MOTORS = {"PUMP-A1": motor("PUMP-A1")}
-
-
-@contextmanager
-def running(
-    repository: Repository,
-    store: RecordingStore,
-    limits: JobLimits = LIMITS,
-    prepare_worker: Callable[[], None] = follow_service,
-    installation: str = "ours",
-) -> Iterator[JobRunner]:
-    runner = JobRunner(
-        repository,
-        store,
-        MOTORS,
-        act_as_told,
-        limits=limits,
-        installation=installation,
-        prepare_worker=prepare_worker,
-        poll_period_s=0.05,
-    )
-    runner.start()
-    try:
-        yield runner
-    finally:
-        runner.stop()
-
-
-def add(repository: Repository, store: RecordingStore, told: str, motor_name: str = "PUMP-A1") -> str:
-    stored = store.store({"E.CFF": told.encode()})
-    return repository.add_recording(stored, motor=motor_name, now_ns=time.time_ns()).recording.id
-
-
-def ended(repository: Repository, *recording_ids: str) -> bool:
-    waiting = (RecordingState.ANNOUNCED, RecordingState.FETCHED)
-    return all(repository.recording(id_).state not in waiting for id_ in recording_ids)
 
 
 def test_every_recording_comes_to_its_end_whatever_the_workers_do(
@@ -270,75 +226,6 @@ def test_two_services_share_the_jobs_and_one_takes_over_from_a_killed_one(
         wait_until(lambda: ended(repository, recording_id))
     (found,) = repository.jobs(recording_id, limit=5).items
     assert (found.job.state, found.job.attempts) == (JobState.DONE, 2)
-
-
-class CutOff(Repository):
-    """The connection is cut after the first claim was kept, and before the answer has come."""
-
-    was_cut = False
-
-    def claim_job(self, *, now_ns: int, runner: str) -> ClaimedJob | None:
-        claimed = super().claim_job(now_ns=now_ns, runner=runner)
-        if claimed is not None and not self.was_cut:
-            self.was_cut = True
-            raise OperationalError("COMMIT", None, ConnectionResetError(), connection_invalidated=True)
-        return claimed
-
-
-@pytest.mark.parametrize("database_url", ["sqlite", "postgresql"], indirect=True)
-def test_a_claim_whose_answer_is_lost_holds_up_no_job(
-    repository: Repository, store: RecordingStore, engine: Engine
-) -> None:
-    recording_id = add(repository, store, "fine")
-    cut_off = CutOff(engine)
-    with running(cut_off, store):
-        wait_until(lambda: ended(repository, recording_id))
-    assert cut_off.was_cut
-    (found,) = repository.jobs(recording_id, limit=5).items
-    assert (found.job.state, found.job.attempts) == (JobState.DONE, 1)
-
-
-@contextmanager
-def locked(engine: Engine) -> Iterator[None]:
-    """Nobody else can write: the database does not answer in time."""
-    with closing(sqlite3.connect(str(engine.url.database))) as other:
-        other.execute("BEGIN IMMEDIATE")
-        yield
-        other.rollback()
-
-
-@contextmanager
-def without_its_table(engine: Engine) -> Iterator[None]:
-    """The database answers, and refuses every statement about jobs."""
-    with engine.begin() as connection:
-        connection.exec_driver_sql("ALTER TABLE jobs RENAME TO jobs_away")
-    yield
-    with engine.begin() as connection:
-        connection.exec_driver_sql("ALTER TABLE jobs_away RENAME TO jobs")
-
-
-@pytest.mark.parametrize(
-    ("trouble", "problem"),
-    [
-        (locked, "the database does not answer"),
-        (without_its_table, "the database refused a statement of this service"),
-    ],
-)
-def test_a_database_in_trouble_is_a_problem_not_the_end(
-    database_url: str,
-    store: RecordingStore,
-    engine: Engine,
-    trouble: Callable[[Engine], AbstractContextManager[None]],
-    problem: str,
-) -> None:
-    repository = Repository(connect(database_url, busy_timeout_s=0.2))
-    repository.sync_plant(two_motor_plant())
-    with running(repository, store) as runner:
-        with trouble(engine):
-            wait_until(lambda: problem in (runner.problem() or ""))
-        recording_id = add(repository, store, "fine")
-        wait_until(lambda: ended(repository, recording_id))
-        wait_until(lambda: runner.problem() is None)
 
 
 def test_the_runner_is_not_ready_before_its_workers_are(
