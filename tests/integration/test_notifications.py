@@ -16,6 +16,7 @@ from tests.service.notifications.conftest import mail_channel
 
 
 @pytest.mark.campaign
+@pytest.mark.timeout(300)
 def test_a_service_sends_tests_and_alarms(tmp_path: Path) -> None:
     with mail_server() as mailbox:
         table = {
