@@ -88,11 +88,12 @@ class ApiServer(uvicorn.Server):
         self.server_state = self._open
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        for each in sockets or ():  # before it is called started: who connects from then on is not refused
+            each.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, UNTAKEN_BYTES)  # its connections inherit it
+            each.listen(QUEUE)
         await super().startup([])  # the sockets have queues of their own
         sys.setswitchinterval(SWITCH_INTERVAL_S)
         for each in sockets or ():
-            each.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, UNTAKEN_BYTES)  # its connections inherit it
-            each.listen(QUEUE)
             most = self._open.limits.waiting
             self._queues.append(
                 ConnectionQueue(each, self._serve_connection, most=most, tally=self._open.tally)

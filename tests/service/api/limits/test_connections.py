@@ -1,5 +1,6 @@
 """Clients that keep the service waiting, seen from their sockets: a real server with short limits."""
 
+import asyncio
 import http.client
 import json
 import socket
@@ -8,8 +9,8 @@ import sys
 import threading
 import time
 from collections import Counter
-from collections.abc import Iterator, MutableMapping
-from contextlib import ExitStack, contextmanager
+from collections.abc import AsyncIterator, Iterator, MutableMapping
+from contextlib import ExitStack, asynccontextmanager, contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -22,6 +23,7 @@ from starlette.responses import PlainTextResponse, Response
 from starlette.routing import Route
 
 from service.api.limits.connections import ConnectionLimits
+from service.api.server import ApiServer
 from testing.waiting import eventually
 from tests.service.api.serving import listening
 
@@ -216,6 +218,31 @@ def test_where_all_are_being_answered_health_alone_is_told(application: Applicat
             lambda: httpx.get(f"http://127.0.0.1:{port}/large", trust_env=False).status_code == 200,
             PATIENCE_S,
         )
+
+
+def test_who_connects_while_the_application_starts_is_answered(application: Application) -> None:
+    starting, go_on = threading.Event(), threading.Event()
+
+    @asynccontextmanager
+    async def lifespan(_: Starlette) -> AsyncIterator[None]:
+        starting.set()
+        await asyncio.to_thread(go_on.wait, PATIENCE_S)
+        yield
+
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        server = ApiServer(Starlette(routes=application.asgi.routes, lifespan=lifespan), PATIENT)
+        thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]})
+        thread.start()
+        assert starting.wait(PATIENCE_S)
+        try:
+            with connected(listener.getsockname()[1], HEALTH) as client:
+                go_on.set()
+                assert client.recv(1 << 16).startswith(b"HTTP/1.1 200")
+        finally:
+            go_on.set()
+            server.should_exit = True
+            thread.join(PATIENCE_S)
 
 
 def test_a_body_that_nobody_reads_has_an_end(application: Application) -> None:
