@@ -25,7 +25,14 @@ from service.api.context import ApiContext
 from service.api.exports import routes as exports
 from service.api.host_guard import HostGuard
 from service.api.limits.arrivals import Arrivals
-from service.api.limits.body_limits import MAX_REPORT_BYTES, BodyLimits, Route, document
+from service.api.limits.body_limits import (
+    MAX_REPORT_BYTES,
+    REPORT_TYPE,
+    UPLOAD_TYPE,
+    BodyLimits,
+    Route,
+    document,
+)
 from service.api.limits.long_lists import LongLists
 from service.api.load import routes as load
 from service.api.motors import baselines, measurements
@@ -51,11 +58,16 @@ Every error is a problem document (RFC 9457)."""
 
 
 def create_app(
-    context: ApiContext, *, pages: Sequence[APIRouter] = (), page_uploads: Collection[Route] = ()
+    context: ApiContext,
+    *,
+    pages: Sequence[APIRouter] = (),
+    page_uploads: Collection[Route] = (),
+    page_reports: Collection[Route] = (),
 ) -> FastAPI:
     """Return the ASGI application for a plant that is in the database already.
 
     pages: routes for people beside those of the API.  page_uploads: those of them that take files.
+    page_reports: those that take a relay's report in a form.
     """
     app = FastAPI(
         title="StatorWatch",
@@ -113,7 +125,7 @@ def create_app(
     app.add_middleware(
         BodyLimits,
         upload_routes=uploads | set(page_uploads),
-        report_routes=texts,
+        report_routes=dict.fromkeys(texts, REPORT_TYPE) | dict.fromkeys(page_reports, UPLOAD_TYPE),
         max_upload_bytes=max_upload_bytes,
         arrivals=arrivals,
     )

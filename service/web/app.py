@@ -10,6 +10,7 @@ from service.web.fleet import routes as fleet
 from service.web.html_problems import HtmlProblems
 from service.web.live import routes as live
 from service.web.load import routes as load
+from service.web.motor import relay_reports
 from service.web.motor import routes as motor
 from service.web.notifications import routes as notifications
 from service.web.people import account
@@ -39,6 +40,7 @@ ROOMS = (
     plant,
     notifications,
     motor,
+    relay_reports,
     load,
     starts,
 )
@@ -47,7 +49,12 @@ ROOMS = (
 
 def create_site(context: ApiContext) -> FastAPI:
     """Return the API and the pages as one ASGI application, for a plant that is in the database already."""
-    app = create_app(context, pages=[room.router for room in ROOMS], page_uploads=recording.UPLOADS)
+    app = create_app(
+        context,
+        pages=[room.router for room in ROOMS],
+        page_uploads=recording.UPLOADS,
+        page_reports=relay_reports.REPORTS,
+    )
     live.install_live(app, context)
     fleet.install_fleet(app, context)
     app.add_middleware(HtmlProblems)

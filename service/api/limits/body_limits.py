@@ -6,7 +6,7 @@ text. All others take small JSON documents, or nothing. Bodies other than files 
 before the route begins.
 """
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from http import HTTPStatus
 from typing import NoReturn
 
@@ -39,7 +39,8 @@ Route = tuple[str, str]
 class BodyLimits:
     """ASGI middleware.
 
-    upload_routes: those that take files of up to `max_upload_bytes`. report_routes: those that take a text.
+    upload_routes: those that take files of up to `max_upload_bytes`.
+    report_routes: those that take a relay's report, and as which media type.
     """
 
     def __init__(
@@ -47,13 +48,16 @@ class BodyLimits:
         app: ASGIApp,
         *,
         upload_routes: frozenset[Route],
-        report_routes: Collection[Route],
+        report_routes: Mapping[Route, str],
         max_upload_bytes: int,
         arrivals: Arrivals,
     ) -> None:
         self._app = app
         self._upload_routes = upload_routes
-        self._report_routes = [(method, compile_path(path)[0]) for method, path in report_routes]
+        self._report_routes = [
+            (method, compile_path(path)[0], media_type)
+            for (method, path), media_type in report_routes.items()
+        ]
         self._max_upload_bytes = max_upload_bytes
         self._arrivals = arrivals
 
@@ -62,9 +66,8 @@ class BodyLimits:
             await self._app(scope, receive, send)
             return
         is_upload = (scope["method"], scope["path"]) in self._upload_routes
-        is_report = any(
-            scope["method"] == method and path.match(scope["path"]) for method, path in self._report_routes
-        )
+        report_type = self._report_type(scope)
+        is_report = report_type is not None
         exchange = _Exchange(receive, send, *self._limit(is_upload=is_upload, is_report=is_report))
         headers = Headers(scope=scope)
         try:
@@ -73,8 +76,8 @@ class BodyLimits:
                 exchange.check_type(headers, UPLOAD_TYPE)
                 await self._upload(scope, exchange)
                 return
-            if is_report:
-                exchange.check_type(headers, REPORT_TYPE)
+            if report_type is not None:
+                exchange.check_type(headers, report_type)
             if await exchange.read_ahead():
                 await self._app(scope, exchange.receive, exchange.send)
         except _RefusalError as error:
@@ -88,6 +91,13 @@ class BodyLimits:
                 await self._app(scope, receive, exchange.send)
         except BusyError as error:
             await busy_response(scope["path"], str(error))(scope, exchange.receive, exchange.send)
+
+    def _report_type(self, scope: Scope) -> str | None:
+        """Return as which media type the route takes a relay's report; None where it takes none."""
+        for method, path, media_type in self._report_routes:
+            if scope["method"] == method and path.match(scope["path"]):
+                return media_type
+        return None
 
     def _limit(self, *, is_upload: bool, is_report: bool) -> tuple[int, str]:
         if is_upload:

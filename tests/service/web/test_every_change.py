@@ -7,6 +7,7 @@ import pytest
 from fastapi.routing import iter_route_contexts
 
 from service.web.app import create_site
+from tests.core.relay_reports.examples import SER
 from tests.docs.role_tables import is_page
 from tests.service.audited import API, ME, PASSWORD, Changes, Prepared, audited_service, sent
 
@@ -128,6 +129,10 @@ FORMS: Changes = {
     "POST /motors/{name}/notes/{note_id}/withdrawal": (
         lambda it: it.client.post(f"{MOTOR}/notes/{it.note()}/withdrawal", data={"reason": "wrong motor"}),
         "note-withdrawn",
+    ),
+    "POST /motors/{name}/reports": (
+        lambda it: it.client.post(f"{MOTOR}/reports", files={"report": ("SER.TXT", SER.encode())}),
+        "report-imported",
     ),
     "POST /notifications/channels/{name}/test": (
         lambda it: it.client.post("/notifications/channels/hook/test"),
