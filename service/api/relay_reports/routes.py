@@ -12,10 +12,11 @@ from service.api.access.requirements import require
 from service.api.context import Context
 from service.api.document import Name
 from service.api.limits.body_limits import MAX_REPORT_BYTES, REPORT_TYPE
+from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
 from service.api.relay_reports.keeping import keep_report
 from service.api.relay_reports.load_profile import PowerUnit
-from service.api.relay_reports.schemas import ReportImport
+from service.api.relay_reports.schemas import RelayEventEntry, ReportImport
 
 router = APIRouter(prefix="/motors/{name}", tags=["motors"])
 
@@ -26,6 +27,17 @@ OrderOfDates = Annotated[DateOrder, Query(description="Order of its dates: the r
 UnitOfPower = Annotated[
     PowerUnit | None, Query(description="Unit of P and Q in a load profile; without it they are left out.")
 ]
+
+
+@router.get("/relay-events", responses=problems(404), dependencies=[require(Permission.VIEW)])
+def list_relay_events(
+    context: Context, name: Name, limit: Limit = DEFAULT_LIMIT, cursor: CursorText = None
+) -> Page[RelayEventEntry]:
+    """Return starts, stops and trips that the relay's sequences of events told, latest first."""
+    return page(
+        context.repository.relay_event_page(name, limit=limit, after=decode(cursor, int, str)),
+        RelayEventEntry.model_validate,
+    )
 
 
 @router.post(

@@ -6,6 +6,7 @@ from core.relay_reports import ReportKind
 from service.api.document import Document, Listed
 from service.api.times import Time
 from service.storage.records import ReportOutcome
+from service.storage.states import RelayEventKind
 
 
 class ImportedStart(Document):
@@ -70,6 +71,13 @@ class EventImport(Document):
     known: int
     ahead: int
     left_out: Listed[str]
+
+
+class RelayEventEntry(Document):
+    """A start, stop or trip of a motor, by its relay's sequence of events."""
+
+    kind: RelayEventKind
+    time: Time = Field(validation_alias="time_ns")
 
 
 class ReportImport(Document):

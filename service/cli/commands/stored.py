@@ -97,6 +97,21 @@ def import_report(
     bring(url, motor, file, date_order=date_order, power_unit=power_unit, as_json=as_json)
 
 
+@commands.command("relay-events")
+def relay_events(
+    motor: MotorName,
+    url: Url = DEFAULT_URL,
+    limit: Limit = 20,
+    *,
+    as_csv: Csv = False,
+    as_json: Json = False,
+) -> None:
+    """Show starts, stops and trips of a motor that its relay's reports told, oldest first."""
+    from service.cli.relay_events import show_relay_events
+
+    show_relay_events(url, motor, limit=limit, as_csv=as_csv, as_json=as_json)
+
+
 @commands.command()
 def load(
     motor: MotorName,

@@ -111,6 +111,9 @@ def test_starts_of_a_report(mcc: Mcc, tmp_path: Path) -> None:
     events, others = mcc("import-report", "PUMP-A1", str(report)).splitlines()
     assert events == "starts, stops and trips that were not known: 1"
     assert others == "other elements, left out: RUNNING, Relay Powered Up"
+    assert "10:15:01 UTC" in mcc("relay-events", "PUMP-A1")
+    [event] = json.loads(mcc("relay-events", "PUMP-A1", "--json"))["relay_events"]
+    assert event == {"time": "2026-03-29T10:15:01.250000000Z", "kind": "start"}
     report.write_text(MSR.replace("7.10", "x"), encoding="ascii")
     refused = " ".join(mcc("import-report", "PUMP-A1", str(report), ends=1).split())
     assert "line 13, I(A): expected a number, found 'x'" in refused

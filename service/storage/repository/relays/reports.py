@@ -9,7 +9,7 @@ from core.relay_reports import MotorStatistics
 from service.audit.actions import AuditAction
 from service.plant import AveragingStep, MeteredQuantity
 from service.storage.models import MeasurementRow, MotorRow, RelayEventRow, RelayStatisticsRow
-from service.storage.records import MeteredHours, RelayEvent
+from service.storage.records import Cursor, MeteredHours, Page, RelayEvent
 from service.storage.records.actors import Actor
 from service.storage.repository.audit.entries import note_change
 from service.storage.repository.sessions import Sessions, found
@@ -122,6 +122,36 @@ class RelayReportRows(Sessions):
         )
         with self._read() as session:
             return tuple(RelayEvent(*row) for row in session.execute(query))
+
+    def relay_event_page(self, motor: str, *, limit: int, after: Cursor | None = None) -> Page[RelayEvent]:
+        """Return a page of a motor's events of all kinds, the latest first. Raises NotFoundError.
+
+        Each kind is read by its key, which holds the time, and no more of it than the page may need.
+        """
+        events: list[RelayEvent] = []
+        with self._read() as session:
+            found(session, MotorRow, motor, "motor")
+            for kind in RelayEventKind:
+                query = (
+                    select(RelayEventRow.kind, RelayEventRow.time_ns)
+                    .where(RelayEventRow.motor == motor, RelayEventRow.kind == kind)
+                    .order_by(RelayEventRow.time_ns.desc())
+                    .limit(limit + 1)
+                )
+                if after is not None:
+                    time_ns, last_kind = after
+                    is_earlier = RelayEventRow.time_ns < time_ns
+                    is_same = RelayEventRow.time_ns == time_ns
+                    query = query.where(
+                        or_(is_earlier, is_same) if kind.value < str(last_kind) else is_earlier
+                    )
+                events += [RelayEvent(*row) for row in session.execute(query)]
+        events.sort(key=_key, reverse=True)
+        return Page(tuple(events[:limit]), _key(events[limit - 1]) if len(events) > limit else None)
+
+
+def _key(event: RelayEvent) -> tuple[int, str]:
+    return event.time_ns, event.kind.value
 
 
 def _statistics(row: RelayStatisticsRow) -> MotorStatistics:

@@ -16,7 +16,7 @@ from service.condition.motor_data import document_of
 from service.configuration.settings import Settings
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
-from service.storage.records import RelayEvent, Sample
+from service.storage.records import Actor, RelayEvent, Sample
 from service.storage.states import RelayEventKind
 from testing.service.plants import motor
 from testing.service.starts import START, RecordedStarts
@@ -26,6 +26,7 @@ REPORTS = "/api/v1/motors/PUMP-A1/reports"
 LOAD = "/api/v1/motors/PUMP-A1/load-profile"
 TIME_NS = nanoseconds("2026-03-29T10:15:30.125Z")
 HOUR_NS = 3600 * NANOSECONDS_PER_SECOND
+TELLER = Actor("ada", "::1")
 TRIPPED = SER.replace("STARTING    Deasserted", "TRIP        Asserted")
 
 
@@ -146,3 +147,29 @@ def test_a_damaged_report_is_kept_or_refused(
     damaged = report[:place] + damage + report[place + len(damage) :]
     assert bring(client, damaged).status_code in (200, 422)
     assert client.get(LOAD).status_code == 200
+
+
+def test_events_come_in_pages_latest_first(client: httpx.Client, repository: Repository) -> None:
+    """Events of one time, of one kind or of several, are each told once."""
+    times_ns = [TIME_NS + HOUR_NS * (number // 2) for number in range(9)]
+    told = {
+        RelayEvent(kind, time_ns)
+        for number, time_ns in enumerate(times_ns)
+        for kind in list(RelayEventKind)[: 1 + number % 3]
+    }
+    repository.add_relay_events("PUMP-A1", sorted(told, key=str), by=TELLER, now_ns=TIME_NS)
+    route = "/api/v1/motors/PUMP-A1/relay-events"
+    found, cursor = [], None
+    while True:
+        query = {"limit": 2} if cursor is None else {"limit": 2, "cursor": cursor}
+        page = client.get(route, params=query).json()
+        found += [(nanoseconds(one["time"]), one["kind"]) for one in page["items"]]
+        assert len(page["items"]) <= 2
+        cursor = page["next_cursor"]
+        if cursor is None:
+            break
+    assert found == sorted(((one.time_ns, one.kind.value) for one in told), reverse=True)
+    whole = client.get(route).json()
+    assert (len(whole["items"]), whole["next_cursor"]) == (len(told), None)
+    assert client.get("/api/v1/motors/FAN-A2/relay-events").json()["items"] == []
+    assert client.get("/api/v1/motors/NONE/relay-events").status_code == 404
