@@ -107,6 +107,7 @@ TIMED: Mapping[str, tuple[str, ...]] = {
     "/api/v1/ieds/{name}": _RELAY,
     "/api/v1/ieds/{name}/link-changes": (*_RELAY, "{busy_relay}?limit=1000", "{some_relay}?cursor={deep}"),
     "/api/v1/gateways": ("",),
+    "/api/v1/job-runners": ("",),
     "/api/v1/alarms": (
         "",
         "?limit=1000",

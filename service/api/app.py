@@ -39,7 +39,7 @@ from service.api.motors import baselines, measurements
 from service.api.motors import routes as motors
 from service.api.notifications import routes as notifications
 from service.api.query_parameters import refuse_unknown_parameters
-from service.api.recordings import deletions, diagnoses, event_reports
+from service.api.recordings import deletions, diagnoses, event_reports, job_runners
 from service.api.recordings import routes as recordings
 from service.api.relay_reports import routes as relay_reports
 from service.api.relays import routes as relays
@@ -98,6 +98,7 @@ def create_app(
         recordings,
         samples,
         diagnoses,
+        job_runners,
         deletions,
         exports,
         reports,

@@ -19,18 +19,16 @@ from sqlalchemy.exc import OperationalError
 from service.api.access.certificate import CertificateError, ServerCertificate
 from service.api.context import ApiContext
 from service.api.server import ApiServer, connection_limits
+from service.application.diagnosing import job_runner
 from service.application.parts import Part, running
 from service.background.workers import background_workers
 from service.collector.supervision.gateway_processes import GatewayProcesses
 from service.collector.supervision.gateway_supervisor import RESTART_POLICY
 from service.condition.motor_data import document_of
-from service.condition.work import ConditionWork
 from service.configuration.problems import Problems
 from service.configuration.relay_access import clear_passwords
 from service.configuration.settings import Settings, SettingsError
 from service.jobs import JobRunner
-from service.jobs.limits import JobLimits
-from service.jobs.worker import diagnose_recording, prepare_worker
 from service.notifications.checking import channel_problems, report_problems, route_problems, warnings
 from service.notifications.work import NotificationWork
 from service.plant import Plant, read_plant
@@ -42,13 +40,9 @@ from service.process.termination import Termination
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect, migrate
 from service.storage.database_url import readable_url
-from service.timing.backoff import Backoff
 from service.web.app import create_site, end_streams
 
 log = structlog.get_logger(__name__)
-
-LONGEST_RETRY_S = 3600.0
-"""Before another attempt of a diagnosis, however many failed."""
 
 
 class ServeError(RuntimeError):
@@ -69,10 +63,10 @@ def serve(settings: Settings, settings_file: Path | None = None) -> None:
 
 def _serve(settings: Settings, settings_file: Path | None, termination: Termination) -> None:
     """Start step by step, and answer requests until a signal comes. Raises SystemExit during the start."""
-    plant = _plant(settings)
+    plant = checked_plant(settings)
     _require_sign_on(settings)
     certificate = _certificate(settings)
-    _require_writable(settings.data_directory)
+    require_writable(settings.data_directory)
     termination.step()
     with exclusive(settings.data_directory / "service.lock", wait=False), listening(settings) as listener:
         repository = _prepared(settings, plant)
@@ -151,8 +145,8 @@ def collect(settings: Settings) -> None:
     end = Event()
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda _number, _frame: end.set())
-    plant = _plant(settings)
-    _require_writable(settings.data_directory)
+    plant = checked_plant(settings)
+    require_writable(settings.data_directory)
     with exclusive(settings.data_directory / "service.lock", wait=False):
         repository = Repository(connect(settings.database_url))
         repository.check()
@@ -162,7 +156,7 @@ def collect(settings: Settings) -> None:
     log.info("collecting ended")
 
 
-def _plant(settings: Settings) -> Plant:
+def checked_plant(settings: Settings) -> Plant:
     """Read the plant. Raises PlantError, SettingsError."""
     problems = Problems()
     plant = read_plant(settings, problems)
@@ -211,33 +205,7 @@ def _parts(
 ) -> tuple[JobRunner, Mapping[str, Part]]:
     """The job runner, and all parts of the service by the names that GET /readyz lists."""
     gateways = GatewayProcesses(settings, plant, repository)
-    motors = {motor.name: motor.motor for motor in plant.motors}
-    conditions = ConditionWork(
-        repository,
-        store,
-        motors,
-        database_url=settings.database_url,
-        most_observing=max(1, settings.workers - 1),
-        alarm_rules=settings.alarms.condition_rules,
-    )
-    jobs = JobRunner(
-        repository,
-        store,
-        motors,
-        diagnose_recording,
-        limits=JobLimits(
-            workers=settings.workers,
-            job_timeout_s=settings.job_timeout_s,
-            attempts=settings.job_attempts,
-            backoff=Backoff(settings.job_retry_delay_s, LONGEST_RETRY_S),
-            lease_s=settings.lease_s,
-        ),
-        installation=installation_id(settings.data_directory),
-        time_zones=plant.time_zones(),
-        conditions=conditions,
-        prepare_worker=prepare_worker,
-        is_ending=lambda: termination.is_asked,
-    )
+    jobs = job_runner(settings, plant, repository, store, is_ending=lambda: termination.is_asked)
     workers = background_workers(
         settings,
         plant,
@@ -260,7 +228,7 @@ def _written(settings: Settings) -> list[Path]:
     return list(dict.fromkeys((settings.data_directory, settings.recordings_directory, Path(gettempdir()))))
 
 
-def _require_writable(directory: Path) -> None:
+def require_writable(directory: Path) -> None:
     """Raise ServeError where no file can be written."""
     try:
         directory.mkdir(parents=True, exist_ok=True)

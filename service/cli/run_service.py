@@ -1,10 +1,11 @@
-"""`mcc serve` and `mcc collect`: the service, or gateways alone, in the foreground."""
+"""`mcc serve`, `mcc collect` and `mcc work`: the service, gateways or workers alone, in the foreground."""
 
 from pathlib import Path
 
 from sqlalchemy.exc import SQLAlchemyError
 
 from service.application.serve import ServeError, collect, serve
+from service.application.work import work
 from service.cli.output import failing_clearly
 from service.configuration.settings import Settings, SettingsError
 from service.plant import PlantError
@@ -29,3 +30,11 @@ def run_gateways(config: Path | None) -> None:
         settings = Settings.load(config)
         configure_logging("gateways", settings.log_format)
         collect(settings)
+
+
+def run_workers(config: Path | None) -> None:
+    """Run until SIGTERM or Ctrl-C. Raises CommandError where the workers cannot start or go on."""
+    with failing_clearly(*TROUBLES, SQLAlchemyError):
+        settings = Settings.load(config)
+        configure_logging("workers", settings.log_format)
+        work(settings)

@@ -16,6 +16,16 @@ LOOK_S = 1.0
 RECONNECT_S = 2.0
 
 
+POLL_PERIOD_S = 0.2
+TOLD_POLL_PERIOD_S = 1.0
+"""Where the database tells of jobs, polls find what was queued while the connection was lost."""
+
+
+def usual_poll_period_s(repository: Repository) -> float:
+    """Return how often a runner looks for jobs by itself [s]."""
+    return TOLD_POLL_PERIOD_S if repository.tells_of_jobs else POLL_PERIOD_S
+
+
 class JobListener:
     """One thread that waits for the database to tell of jobs. The runner's polls are the net under it."""
 

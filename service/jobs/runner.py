@@ -1,5 +1,7 @@
 """Take jobs from the database, have worker processes do them, write the results back."""
 
+import os
+import socket
 import time
 import uuid
 from collections import deque
@@ -18,14 +20,14 @@ from service.condition.record_times import ImpossibleTimeError, require_possible
 from service.condition.work import ConditionTask, ConditionWork
 from service.jobs.answers import Answers
 from service.jobs.limits import JobLimits
-from service.jobs.listening import JobListener
+from service.jobs.listening import JobListener, usual_poll_period_s
 from service.jobs.relay_time import TriggeredRecord, note_relay_time
 from service.jobs.task import Diagnosed, DiagnosisTask, Outcome, Rejected, Task
 from service.jobs.worker_pool import NoWorkersError, WorkerPool
 from service.jobs.worker_process import follow_service
 from service.recording_store.store import RecordingStore, RecordingStoreError
 from service.storage.errors import NotFoundError, RunnerEndedError, UnstorableDiagnosisError
-from service.storage.records import ClaimedJob
+from service.storage.records import ClaimedJob, JobRunnerPlace
 from service.storage.repository import Repository
 from service.storage.texts import storable
 from service.timing.boot_clock import boot_time_s
@@ -36,10 +38,6 @@ from service.timing.periodic_worker import PeriodicWorker
 log: FilteringBoundLogger = structlog.get_logger(__name__)
 
 RENEWALS_A_LEASE = 3
-
-POLL_PERIOD_S = 0.2
-TOLD_POLL_PERIOD_S = 1.0
-"""Where the database tells of jobs, polls find what was queued while the connection was lost."""
 
 CONDITION_TIMEOUT_S = 60.0
 """Tasks for conditions end after a second; one that lasts so long hangs."""
@@ -91,9 +89,8 @@ class JobRunner:
         self._conditions = conditions
         self._condition_results: deque[tuple[ConditionTask, Future[int]]] = deque()
         self._loading = limits.workers
-        if poll_period_s is None:
-            poll_period_s = TOLD_POLL_PERIOD_S if repository.tells_of_jobs else POLL_PERIOD_S
-        self._worker = PeriodicWorker("the job runner", self._step, period_s=poll_period_s, at_once=True)
+        period_s = poll_period_s or usual_poll_period_s(repository)
+        self._worker = PeriodicWorker("the job runner", self._step, period_s=period_s, at_once=True)
         self._listener = JobListener(repository, self._worker.wake)
         self._answers = Answers(self._worker.wake)
         self.compute = self._answers.ask
@@ -135,7 +132,7 @@ class JobRunner:
         if self._pool.has_ended():
             self._give_back()
             self._pool.renew()
-        self._pool_problem = self._pool.problem
+        self._pool_problem = self._pool.problem or self._store_problem()
         if self._pool_problem is not None:
             self._answers.refuse(self._pool_problem)
             return
@@ -145,6 +142,12 @@ class JobRunner:
         self._claim_jobs()
         while self._has_free_worker() and self._begin_condition_task():
             pass
+
+    def _store_problem(self) -> str | None:
+        """Return why no recording can be read. Jobs wait meanwhile; none of their recordings is at fault."""
+        if self._store.is_there():
+            return None
+        return f"{self._store.root}: expected the folder of the recordings, found none: is it mounted?"
 
     def _has_free_worker(self) -> bool:
         others = 0 if self._conditions is None else self._conditions.tasks_under_way
@@ -176,6 +179,7 @@ class JobRunner:
             installation=self._installation,
             now_ns=time.time_ns(),
             max_attempts=self._limits.attempts,
+            place=JobRunnerPlace(socket.gethostname(), os.getpid(), self._limits.workers),
         )
 
     def _renew(self) -> None:

@@ -125,6 +125,10 @@ class RecordingStore:
         self._incoming = root / "incoming" / writer
         self._incoming.mkdir(parents=True, exist_ok=True)
 
+    def is_there(self) -> bool:
+        """Tell whether the folder is the store's: that of a file system that is not mounted is empty."""
+        return self._incoming.parent.is_dir()
+
     @contextmanager
     def incoming(self) -> Iterator[Incoming]:
         """Provide a place for the files of one record; what is not kept is removed when the block ends."""

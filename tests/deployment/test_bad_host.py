@@ -7,7 +7,7 @@ import pytest
 
 import scl
 from scl.demo_enterprise import write_demo_enterprise
-from service.application.serve import ServeError, _require_writable
+from service.application.serve import ServeError, require_writable
 from service.configuration.settings import Settings
 from service.demo import MOTORS
 from service.plant import PlantError, read_plant
@@ -15,7 +15,7 @@ from service.plant import PlantError, read_plant
 
 def test_a_data_directory_that_cannot_be_written_to() -> None:
     with pytest.raises(ServeError) as failure:
-        _require_writable(Path("/proc/self"))  # nobody may, not even root
+        require_writable(Path("/proc/self"))  # nobody may, not even root
     assert str(failure.value).startswith(
         f"/proc/self: expected a directory that user {os.getuid()} may write to (setting data_directory)"
     )

@@ -64,3 +64,13 @@ def collect(
     from service.cli.run_service import run_gateways
 
     run_gateways(config)
+
+
+@commands.command()
+def work(
+    config: Config = None,
+) -> None:
+    """Run diagnosis workers alone, for a service on another host (PostgreSQL). Ends on SIGTERM or Ctrl-C."""
+    from service.cli.run_service import run_workers
+
+    run_workers(config)

@@ -19,6 +19,9 @@ class JobRunnerRow(Base):
     installation: Mapped[str]
     renewals: Mapped[int]
     started_ns: Mapped[int]
+    host: Mapped[str] = mapped_column(server_default="")
+    process_id: Mapped[int] = mapped_column(server_default="0")
+    workers: Mapped[int] = mapped_column(server_default="0")
 
 
 class JobRow(Base):

@@ -11,6 +11,27 @@ Quantity = Literal["mu_f", "theta_f", "load_level"]
 
 
 @dataclass(frozen=True, slots=True)
+class JobRunnerPlace:
+    """Where a job runner is: its host and process, and how many diagnoses it makes at once."""
+
+    host: str
+    process_id: int
+    workers: int
+
+
+@dataclass(frozen=True, slots=True)
+class JobRunnerEntry:
+    """A job runner, and how many jobs it has under way."""
+
+    id: str
+    host: str
+    process_id: int
+    workers: int
+    started_ns: int
+    jobs: int
+
+
+@dataclass(frozen=True, slots=True)
 class Job:
     """A diagnosis to be made, under way, or made."""
 

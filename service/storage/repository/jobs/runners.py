@@ -7,20 +7,30 @@ that runner dead and have its jobs queued again. What a dead runner still brings
 
 from collections.abc import Collection
 
-from sqlalchemy import select
+from sqlalchemy import and_, func, select
 from sqlalchemy.orm import Session
 
 from service.storage.errors import RunnerEndedError
 from service.storage.models import JobRow, JobRunnerRow
+from service.storage.records import JobRunnerEntry, JobRunnerPlace
 from service.storage.repository.jobs.steps import release, retry_or_give_up
 from service.storage.repository.sessions import Sessions
 from service.storage.states import JobState
 
 INTERRUPTED = "the service ended during the diagnosis"
+NOWHERE = JobRunnerPlace("", 0, 0)
 
 
 class JobRunnerRows(Sessions):
-    def register_runner(self, runner: str, *, installation: str, now_ns: int, max_attempts: int) -> int:
+    def register_runner(
+        self,
+        runner: str,
+        *,
+        installation: str,
+        now_ns: int,
+        max_attempts: int,
+        place: JobRunnerPlace = NOWHERE,
+    ) -> int:
         """Add a runner that starts, and return how many interrupted jobs are queued again.
 
         Those are the jobs of earlier runners of this installation, which its exclusive data directory proves
@@ -33,7 +43,17 @@ class JobRunnerRows(Sessions):
             queued = _requeue(session, None, now_ns, max_attempts)
             for one in ended:
                 queued += _end(session, one, now_ns, max_attempts)
-            session.add(JobRunnerRow(id=runner, installation=installation, renewals=0, started_ns=now_ns))
+            session.add(
+                JobRunnerRow(
+                    id=runner,
+                    installation=installation,
+                    renewals=0,
+                    started_ns=now_ns,
+                    host=place.host,
+                    process_id=place.process_id,
+                    workers=place.workers,
+                )
+            )
             return queued
 
     def renew_runner(self, runner: str) -> dict[str, int]:
@@ -47,6 +67,20 @@ class JobRunnerRows(Sessions):
                 raise RunnerEndedError(runner)
             own.renewals += 1
             return {row.id: row.renewals for row in session.scalars(select(JobRunnerRow))}
+
+    def job_runners(self) -> tuple[JobRunnerEntry, ...]:
+        """Return all job runners, by id, with the number of jobs each has under way."""
+        query = (
+            select(JobRunnerRow, func.count(JobRow.id))
+            .outerjoin(JobRow, and_(JobRow.state == JobState.RUNNING, JobRow.runner == JobRunnerRow.id))
+            .group_by(JobRunnerRow.id)
+            .order_by(JobRunnerRow.id)
+        )
+        with self._read() as session:
+            return tuple(
+                JobRunnerEntry(row.id, row.host, row.process_id, row.workers, row.started_ns, jobs)
+                for row, jobs in session.execute(query)
+            )
 
     def release_unknown_jobs(self, runner: str, known: Collection[str]) -> int:
         """Put back the runner's jobs that it does not know of, as if they had not been claimed.
