@@ -1,12 +1,15 @@
 """Observations for tests of the storage: figures of a healthy motor, of which one tells the record."""
 
 from dataclasses import replace
+from math import pi
 
 import numpy as np
 
+from core.condition.measuring.measurement import WARM
 from core.condition.observation import Observation, VoltageChannels
 from core.signals.sequence import PhaseSequence
 from core.units import NANOSECONDS_PER_SECOND
+from testing.machines.motors import REFERENCE
 from testing.service.plants import NOW_NS
 
 HOUR_NS = 3600 * NANOSECONDS_PER_SECOND
@@ -36,7 +39,11 @@ def observation(hour: float, negative_voltage_V: complex = OBSERVATION.negative_
 
 
 def records_of_a_motor(number: int, *, fault_from: int | None = None, seed: int = 1) -> list[Observation]:
-    """Hourly records of one motor on a supply that wanders; from a record on with about 2 % shorted turns."""
+    """Hourly records of the demo plant's motor on a supply that wanders, at loads from little to rated.
+
+    From a record on it has about 2 % shorted turns. Its currents are those of its equivalent circuit, so that
+    its parameters stay what they are.
+    """
     rng = np.random.default_rng(seed)
     Z2 = complex(15.0, 20.5)
     standing = 0.002 + 0.001j
@@ -44,7 +51,7 @@ def records_of_a_motor(number: int, *, fault_from: int | None = None, seed: int 
     for at in range(number):
         v2 = 0.008 * rng.random() * np.exp(2j * np.pi * rng.random())
         noise = 2e-4 * complex(*rng.normal(size=2))
-        I1 = rng.uniform(1.0, 2.0) * np.exp(-0.7j)
+        I1 = 310.0 / _impedance(slip=rng.uniform(0.01, 0.05))
         fault = 0.0 if fault_from is None or at < fault_from else 0.012 * np.exp(0.3j)
         records.append(
             replace(
@@ -52,8 +59,18 @@ def records_of_a_motor(number: int, *, fault_from: int | None = None, seed: int 
                 time_ns=NOW_NS + at * HOUR_NS,
                 positive_voltage_V=310.0 + 0.0j,
                 negative_voltage_V=complex(310.0 * (v2 + noise)),
-                positive_current_A=complex(I1),
+                positive_current_A=I1,
                 negative_current_A=complex(310.0 * (v2 + standing + fault) / Z2),
             )
         )
     return records
+
+
+def _impedance(slip: float) -> complex:
+    """Return the impedance of the demo plant's warm motor to the positive sequence [ohm]."""
+    machine = REFERENCE.parameters
+    w = 2.0 * pi * OBSERVATION.frequency_hz
+    stator = complex(WARM * machine.stator_resistance_ohm, w * machine.stator_leakage_H)
+    rotor = complex(WARM * machine.rotor_resistance_ohm / slip, w * machine.rotor_leakage_H)
+    magnetising = 1j * w * machine.magnetising_inductance_H
+    return stator + magnetising * rotor / (magnetising + rotor)
