@@ -38,6 +38,7 @@ from service.plant import Relay
 from service.recording_store.store import Incoming, RecordingStore
 from service.storage import Repository
 from service.storage.errors import FolderGoneError
+from service.storage.records import RemoteRecord
 from service.storage.states import AlarmKind
 
 log = structlog.get_logger(__name__)
@@ -48,8 +49,8 @@ ANNOUNCED_S = 1.0
 PULL_MARGIN = 2.0
 """A pull may take so many times as long as the latest one lets expect."""
 
-ClaimRequest = Callable[[str], str | None]
-"""Returns the recording request, if any, that a new record of this name belongs to."""
+ClaimRequest = Callable[[RemoteRecord], str | None]
+"""Returns the recording request, if any, that a new record belongs to."""
 
 
 class RecordAlarms(Protocol):
@@ -69,7 +70,7 @@ class RecordAlarms(Protocol):
 class _View:
     """What a listing comes to. It holds while neither the listing nor the ledger's revision changes.
 
-    new: records that are waited for, oldest first.  names: of all records.
+    new: records that are waited for, oldest first.  records: all of them.
     """
 
     contents: Contents
@@ -78,7 +79,7 @@ class _View:
     revision: int
     chosen: Chosen
     new: tuple[RecordState, ...]
-    names: frozenset[str]
+    records: frozenset[RemoteRecord]
 
 
 class RecordDirectory:
@@ -191,8 +192,8 @@ class RecordDirectory:
         self._ledger.pass_over(set(states).difference(chosen.states))
         new = [state for state in chosen.states if not state.is_decided]
         new.sort(key=lambda state: (state.in_store, state.record.modified_ns, state.name))
-        names = frozenset(state.name for state in states)
-        return _View(contents, listing, states, self._ledger.revision, chosen, tuple(new), names)
+        records = frozenset(state.remote for state in states)
+        return _View(contents, listing, states, self._ledger.revision, chosen, tuple(new), records)
 
     def _settle(self, view: _View, *, expected: bool) -> None:
         """Judge each new record by whether it has come whole and stopped changing."""
@@ -257,8 +258,8 @@ class RecordDirectory:
 
     def _take_all(
         self, client: Client, ready: list[RecordState], claim: ClaimRequest, *, until_s: float
-    ) -> tuple[str, ...]:
-        """Pull what is ready as far as the day's limit allows. Return the names of those that must wait."""
+    ) -> tuple[RecordState, ...]:
+        """Pull what is ready as far as the day's limit allows. Return those that must wait."""
         with Batch(
             client,
             self._store,
@@ -283,7 +284,7 @@ class RecordDirectory:
                         "max_relay_bytes_per_day), found more; new records wait in the relay until midnight "
                         "UTC",
                     )
-                    return tuple(late.name for late in ready[number:])
+                    return tuple(ready[number:])
                 # A record that failed before may end the visit: what was fetched is kept first.
                 if batch.is_due() or state.attempts:
                     self._keep_all(client, batch, claim)
@@ -324,7 +325,7 @@ class RecordDirectory:
 
     def _keep(self, state: RecordState, incoming: Incoming, claim: ClaimRequest) -> None:
         try:
-            self._ledger.keep(state, incoming.keep(), claim(state.name))
+            self._ledger.keep(state, incoming.keep(), claim(state.remote))
         except FolderGoneError as error:  # somebody deleted the same content just now
             log.info("record pulled once more", relay=self._relay, record=state.name, reason=str(error))
 
@@ -366,25 +367,23 @@ class RecordDirectory:
     def _refuse(self, state: RecordState, reason: str, claim: ClaimRequest) -> None:
         """Do not pull the record again. Its request fails only where no other format is left."""
         has_another = self._view is not None and state in self._view.chosen.replaceable
-        self._ledger.refuse(state, reason, None if has_another else claim(state.name))
+        self._ledger.refuse(state, reason, None if has_another else claim(state.remote))
         outcome = "record refused, another format is taken" if has_another else "record refused"
         log.warning(outcome, relay=self._relay, record=state.name, reason=reason)
 
-    def _outcome(self, view: _View, unsteady: list[RecordState], held_back: tuple[str, ...]) -> Scan:
+    def _outcome(self, view: _View, unsteady: list[RecordState], held_back: tuple[RecordState, ...]) -> Scan:
         now_s = time.monotonic()
         to_come = {state for state in view.new if _is_to_come(state, view.chosen)}
-        not_soon = {state.name for state in unsteady}.union(
-            held_back, (state.name for state in view.new if state.pause_s(now_s) > self._policy.soon_s)
+        not_soon = {*unsteady, *held_back}.union(
+            state for state in view.new if state.pause_s(now_s) > self._policy.soon_s
         )
         ignored = view.chosen.passed_over + view.listing.ignored
         return Scan(
-            listed=view.names,
+            listed=view.records,
             taken=tuple(state.name for state in view.new if state not in to_come),
-            waiting=tuple(
-                state.name for state in view.new if state in to_come and state.name not in not_soon
-            ),
-            held_back=held_back,
-            failing={state.name: state.reason for state in view.new if state.reason is not None},
+            waiting=tuple(state.remote for state in view.new if state in to_come and state not in not_soon),
+            held_back=tuple(state.remote for state in held_back),
+            failing={state.remote: state.reason for state in view.new if state.reason is not None},
             ignored=ignored[:MOST_IGNORED],
             ignored_in_all=len(view.chosen.passed_over) + view.listing.ignored_in_all,
         )

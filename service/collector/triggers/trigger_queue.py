@@ -28,11 +28,12 @@ from mms import (
     Timestamp,
 )
 from service.collector.records.scan import Scan
+from service.collector.triggers.listed_before import ListedBefore, listed_in
 from service.collector.triggers.request_deadlines import RequestDeadlines, UnansweredRequests
 from service.collector.triggers.series import NoSeriesError, SeriesUnderWay, rhythm_of
 from service.plant import Acquisition, Relay, TriggerAction, acquisition_from_scl
 from service.storage import Repository
-from service.storage.records import RecordingRequest
+from service.storage.records import RecordingRequest, RemoteRecord
 from service.storage.states import IN_THE_RELAY, RecordingRequestState
 
 log = structlog.get_logger(__name__)
@@ -87,7 +88,7 @@ class TriggerQueue:
         self._claimed = False
         self._recalled_s = 0.0
         self._operated_for: str | None = None
-        self._listed_before: frozenset[str] = frozenset()
+        self._listed_before = ListedBefore()
         self._held_up_since_s: float | None = None
         self._series: SeriesUnderWay | None = None
 
@@ -134,11 +135,12 @@ class TriggerQueue:
         Records which that gateway had seen before the trigger, and could not fetch, belong to no request.
         """
         self._operated_for = request.id
-        self._listed_before = self._repository.unfetched_names(
+        unfetched = self._repository.unfetched_names(
             self._relay.name, seen_before_ns=request.triggered_ns or 0
         )
+        self._listed_before = ListedBefore(open=unfetched)
 
-    def claim(self, record_name: str) -> str | None:
+    def claim(self, record: RemoteRecord) -> str | None:
         """Return the request a new record belongs to; both are then written down in one transaction."""
         # The record before this one may have been what a request waited for, and a fetch may take minutes.
         if self._claimed or time.monotonic() > self._recalled_s + RECALLED_FOR_S:
@@ -148,7 +150,7 @@ class TriggerQueue:
         if self._series is not None:
             self._series.came()
         request = self._outstanding
-        if request is None or record_name in self._listed_before:
+        if request is None or record in self._listed_before:
             return None
         return request.id
 
@@ -169,15 +171,14 @@ class TriggerQueue:
             return self._next is not None and (
                 self._is_held_up(scan) or self._grant(client, self._next, scan)
             )
-        held_back = [name for name in scan.held_back if name not in self._listed_before]
-        if held_back:
+        if any(record not in self._listed_before for record in scan.held_back):
             self._fail(
                 request,
                 f"{self._relay.name}: its record waits in the relay for another day, because the relay sent "
                 "as much today as the setting max_relay_bytes_per_day allows",
             )
             return False
-        appeared = {*scan.waiting, *scan.failing} - self._listed_before
+        appeared = {record for record in {*scan.waiting, *scan.failing} if record not in self._listed_before}
         still_written = appeared - scan.failing.keys()  # for as long as the directory's own limits allow
         is_overdue = self._series is None and self._deadlines.ends_without_record(request, time.monotonic())
         if appeared and request.state is RecordingRequestState.TRIGGERED:
@@ -187,11 +188,11 @@ class TriggerQueue:
             return False
         return True
 
-    def _why_overdue(self, request: RecordingRequest, scan: Scan, appeared: Set[str]) -> str:
+    def _why_overdue(self, request: RecordingRequest, scan: Scan, appeared: Set[RemoteRecord]) -> str:
         within = f"within {self._deadlines.timeout_s:g} s"
-        failing = sorted(appeared & scan.failing.keys())
-        if failing:
-            return f"{self._relay.name}: its record could not be fetched {within}: {scan.failing[failing[0]]}"
+        failing = min(appeared & scan.failing.keys(), key=lambda record: record.name, default=None)
+        if failing is not None:
+            return f"{self._relay.name}: its record could not be fetched {within}: {scan.failing[failing]}"
         if request.state is RecordingRequestState.RECORDED:
             return (
                 f"{self._relay.name}: its record was seen in the relay, but is gone, or still changes after "
@@ -230,7 +231,7 @@ class TriggerQueue:
         elif scan.unreachable is not None:
             self._fail(request, f"{self._relay.name} is not triggered: {scan.unreachable}")
         else:
-            return self._trigger(client, request, control, scan.listed)
+            return self._trigger(client, request, control, listed_in(scan))
         return False
 
     def _is_busy(self, client: Client, request: RecordingRequest, control: str) -> bool:
@@ -247,9 +248,7 @@ class TriggerQueue:
             return False  # the trigger itself says why
         return False
 
-    def _trigger(
-        self, client: Client, request: RecordingRequest, control: str, listed: frozenset[str]
-    ) -> bool:
+    def _trigger(self, client: Client, request: RecordingRequest, control: str, listed: ListedBefore) -> bool:
         if self._is_busy(client, request, control):
             return True
         rhythm = None

@@ -82,3 +82,40 @@ def test_the_next_follows_at_once_where_no_record_came(bench: Bench, silent: Scr
     assert failed is not None
     assert granted is not None
     assert granted - failed < AT_ONCE_S * SECOND_NS
+
+
+def test_a_record_under_a_name_that_was_listed_before_belongs_to_its_request(
+    bench: Bench, silent: ScriptedRelay
+) -> None:
+    """A relay whose numbers began anew writes it over the old one."""
+    silent.write_record("HR_1", b"an old record")
+    with bench.with_settings(record_timeout_s=LONG_S).session() as session:
+        assert eventually(lambda: bench.is_stored("HR_1"))
+        old = bench.recording("HR_1")
+        request_id = bench.request()
+        session.wake()
+        assert bench.reaches(request_id, RecordingRequestState.TRIGGERED)
+        silent.write_record("HR_1", b"the record that was asked for")
+        assert bench.reaches(request_id, RecordingRequestState.FETCHED)
+    recording = bench.repository.recording(bench.requested(request_id).recording_id or "")
+    assert old is not None
+    assert recording.id != old.id
+    stored = bench.store.find(recording.digest or "").directory / "HR_1.DAT"
+    assert stored.read_bytes() == b"the record that was asked for"
+
+
+def test_a_record_that_could_not_be_fetched_before_the_trigger_belongs_to_no_request(
+    bench: Bench, silent: ScriptedRelay
+) -> None:
+    """It may be written on meanwhile, and be listed with another size."""
+    silent.denied.add("HR_1")
+    silent.write_record("HR_1", b"an old record")
+    with bench.session() as session:
+        request_id = bench.request()
+        session.wake()
+        assert bench.reaches(request_id, RecordingRequestState.TRIGGERED)
+        silent.denied.clear()
+        silent.write_record("HR_1", b"an old record, and more of it")
+        assert eventually(lambda: bench.is_stored("HR_1"))
+        assert bench.reaches(request_id, RecordingRequestState.FAILED)
+    assert bench.requested(request_id).recording_id is None
