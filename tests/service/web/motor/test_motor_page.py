@@ -205,7 +205,7 @@ def test_forms_are_there_for_those_who_may(shown: Shown) -> None:
     assert seen == {
         Role.VIEWER: set(),
         Role.OPERATOR: operator,
-        Role.ENGINEER: operator | {"diagnoses", "reference"},
+        Role.ENGINEER: operator | {"diagnoses", "reference", "reports"},
         Role.SECADM: None,
         Role.SECAUD: None,
     }
