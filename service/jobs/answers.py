@@ -7,13 +7,10 @@ from collections import deque
 from collections.abc import Callable
 from concurrent.futures import Future
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Any
 
-from service.jobs.worker_pool import NoWorkersError, WorkerPool
+from service.jobs.workers import Argument, NoWorkersError, Result, Workers
 from service.waveforms.computing import ANSWER_TIMEOUT_S, NoAnswerError
-
-Argument = TypeVar("Argument")
-Result = TypeVar("Result")
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +43,7 @@ class Answers:
         self._wake()
         return answer
 
-    def begin(self, pool: WorkerPool) -> bool:
+    def begin(self, pool: Workers) -> bool:
         """Give a worker what was asked first. Returns False where nothing waits."""
         self._problem = None
         if not self._asked:

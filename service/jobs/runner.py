@@ -23,8 +23,9 @@ from service.jobs.limits import JobLimits
 from service.jobs.listening import JobListener, usual_poll_period_s
 from service.jobs.relay_time import TriggeredRecord, note_relay_time
 from service.jobs.task import Diagnosed, DiagnosisTask, Outcome, Rejected, Task
-from service.jobs.worker_pool import NoWorkersError, WorkerPool
+from service.jobs.worker_pool import WorkerPool
 from service.jobs.worker_process import follow_service
+from service.jobs.workers import NoWorkersError, Workers
 from service.recording_store.store import RecordingStore, RecordingStoreError
 from service.storage.errors import NotFoundError, RunnerEndedError, UnstorableDiagnosisError
 from service.storage.records import ClaimedJob, JobRunnerPlace
@@ -38,7 +39,6 @@ from service.timing.periodic_worker import PeriodicWorker
 log: FilteringBoundLogger = structlog.get_logger(__name__)
 
 RENEWALS_A_LEASE = 3
-
 CONDITION_TIMEOUT_S = 60.0
 """Tasks for conditions end after a second; one that lasts so long hangs."""
 
@@ -65,8 +65,9 @@ class JobRunner:
         prepare_worker: Callable[[], None] = follow_service,
         poll_period_s: float | None = None,
         is_ending: Callable[[], bool] = lambda: False,
+        workers: Workers | None = None,
     ) -> None:
-        """time_zones: of the clocks of relays that do not run in UTC, by motor (IANA names).
+        """time_zones: of clocks that are not in UTC, by motor (IANA). workers: by default of this machine.
 
         conditions: what workers do that have nothing to diagnose. is_ending: workers are not needed.
         poll_period_s: looks for jobs so often; by default seldom where the database tells of them.
@@ -81,7 +82,7 @@ class JobRunner:
         self._id = str(uuid.uuid4())
         self._peers = PeerLiveness(limits.lease_s)
         self._renew_at_s = 0.0
-        self._pool = WorkerPool(limits.workers, prepare_worker, is_ending)
+        self._pool = workers or WorkerPool(limits.workers, prepare_worker, is_ending)
         self._pool_problem: str | None = None
         self._in_flight: dict[str, Future[Outcome]] = {}
         self._may_hold_unknown_jobs = False

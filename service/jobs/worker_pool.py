@@ -13,24 +13,17 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from multiprocessing.synchronize import Semaphore
 from threading import Thread
-from typing import TypeVar
 
 import structlog
 from pebble import ProcessPool
 
+from service.jobs.workers import Argument, NoWorkersError, Result
 from service.process.termination import held_back
 from service.timing.backoff import RestartDelay
 
 log = structlog.get_logger(__name__)
 
-Argument = TypeVar("Argument")
-Result = TypeVar("Result")
-
 STOP_TIMEOUT_S = 10.0
-
-
-class NoWorkersError(RuntimeError):
-    """There are no workers at the moment; there will be."""
 
 
 class WorkerPool:

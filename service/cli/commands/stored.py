@@ -9,6 +9,7 @@ from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL, Method, Model
 from core.operation import Operation
 from service.cli.commands.options import (
     DEFAULT_URL,
+    Config,
     Csv,
     DefaultGroup,
     From,
@@ -201,7 +202,10 @@ def upload(
 
 @commands.command()
 def rediagnose(
-    recordings: RecordingIds,
+    recordings: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="[RECORDING...]", help="Ids, as mcc recordings shows them."),
+    ] = None,
     url: Url = DEFAULT_URL,
     method: Method = DEFAULT_METHOD,
     model: Model = DEFAULT_MODEL,
@@ -212,12 +216,60 @@ def rediagnose(
         ),
     ] = 60.0,
     *,
+    batch: Annotated[
+        bool,
+        typer.Option(
+            "--batch",
+            help="All recordings, in workers of this command; reads the database, not the API.",
+        ),
+    ] = False,
+    scheduler: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ADDRESS", help="With --batch: on the workers of this Dask scheduler, tcp://HOST:8786."
+        ),
+    ] = None,
+    config: Config = None,
+    motor: Annotated[
+        list[str] | None,
+        typer.Option(metavar="MOTOR", help="With --batch: only this motor's; several times for several."),
+    ] = None,
+    processes: Annotated[
+        int | None,
+        typer.Option(min=1, max=256, help="With --batch: so many (default: workers of the settings)."),
+    ] = None,
+    made_before: Annotated[
+        str | None,
+        typer.Option(metavar="TIME", help="With --batch: also those made before this time or date."),
+    ] = None,
     as_csv: Csv = False,
     as_json: Json = False,
 ) -> None:
     """Diagnose stored recordings again, with the motor's parameters and baseline of today."""
+    if batch:
+        from service.cli.recordings.batch import rediagnose_archive
+
+        if recordings or as_csv:
+            raise typer.BadParameter("--batch: expected neither recordings nor --csv; choose by --motor")
+        rediagnose_archive(
+            config,
+            scheduler,
+            motor or [],
+            method.value,
+            model.value,
+            processes=processes,
+            made_before=made_before,
+            as_json=as_json,
+        )
+        return
     from service.cli.recordings.rediagnose import rediagnose_recordings
 
+    if not recordings:
+        raise typer.BadParameter("expected the ids of recordings, or --batch for all of them")
+    if scheduler or motor or processes or made_before or config:
+        raise typer.BadParameter(
+            "--scheduler, --config, --motor, --processes and --made-before are for --batch"
+        )
     rediagnose_recordings(
         url, recordings, method.value, model.value, wait_s=wait, as_csv=as_csv, as_json=as_json
     )

@@ -26,6 +26,7 @@ from service.storage.repository.history.supply import SupplyRows
 from service.storage.repository.history.thinned_trend import ThinnedTrendRows
 from service.storage.repository.jobs.notices import JobNoticeRows
 from service.storage.repository.jobs.queue import JobRows
+from service.storage.repository.jobs.repetitions import RepetitionRows
 from service.storage.repository.jobs.runners import JobRunnerRows
 from service.storage.repository.load_profiles import LoadProfileRows
 from service.storage.repository.measurements import MeasurementRows
@@ -62,6 +63,7 @@ class Repository(
     SeriesRows,
     RemoteRecordRows,
     JobRows,
+    RepetitionRows,
     JobRunnerRows,
     JobNoticeRows,
     MotorHealthRows,

@@ -1,0 +1,160 @@
+"""`mcc rediagnose --batch` in processes of its own, on real recordings, on clusters of Dask that are real."""
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from datetime import UTC, datetime
+from pathlib import Path
+
+import pytest
+
+from core.diagnosis.methods import DEFAULT_METHOD
+from service.jobs import JobRunner
+from service.jobs.limits import JobLimits
+from service.jobs.worker import diagnose_recording, prepare_worker
+from service.storage.states import JobState
+from service.timing.backoff import Backoff
+from testing.service.archive import Archive, make_archive
+from testing.waiting import wait_until
+
+MCC = (sys.executable, "-m", "service.cli", "rediagnose", "--batch")
+LIMITS = JobLimits(workers=1, job_timeout_s=60.0, attempts=2, backoff=Backoff(0.01, 0.1), lease_s=30.0)
+MODEL = "shorted-winding"
+RECORDS = 12
+
+
+@pytest.fixture
+def archive(tmp_path: Path) -> Iterator[Archive]:
+    archive = make_archive(tmp_path, RECORDS)
+    yield archive
+    archive.engine.dispose()
+
+
+def start(archive: Archive, *words: str) -> "subprocess.Popen[str]":
+    command = [*MCC, "--config", str(archive.config), *words]
+    return subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
+    )
+
+
+def run(archive: Archive, *words: str) -> dict[str, object]:
+    with start(archive, *words, "--json") as process:
+        said, complained = process.communicate(timeout=90)
+    assert (process.returncode, complained) == (0, "")
+    told: dict[str, object] = json.loads(said)
+    return told
+
+
+def told(to_do: int, already: int) -> dict[str, object]:
+    return {"to_do": to_do, "made": to_do, "already_made": already, "failed": []}
+
+
+def diagnose_by_the_service(archive: Archive) -> None:
+    """Queue a diagnosis of each recording, as the API does, and have a service's runner make them."""
+    repository = archive.repository
+    queued = [
+        repository.request_diagnosis(one, now_ns=0, method=DEFAULT_METHOD, model=MODEL)
+        for one in archive.recordings
+    ]
+    motors = {one.name: one.motor for one in archive.plant.motors}
+    runner = JobRunner(
+        repository,
+        archive.store,
+        motors,
+        diagnose_recording,
+        limits=LIMITS,
+        installation="service",
+        prepare_worker=prepare_worker,
+    )
+    runner.start()
+    try:
+        wait_until(lambda: len(repository.ended_jobs([job.id for job in queued])) == RECORDS, within_s=60)
+    finally:
+        runner.stop()
+
+
+def test_a_batch_gives_what_the_service_gives_and_once(archive: Archive) -> None:
+    diagnose_by_the_service(archive)
+    by_the_service = archive.documents()
+    now = datetime.now(UTC).isoformat()
+    assert run(archive, "--model", MODEL, "--processes", "1") == told(0, RECORDS)
+    assert run(archive, "--model", MODEL, "--processes", "2", "--made-before", now) == told(RECORDS, 0)
+    assert archive.made() == [2] * RECORDS
+    assert archive.documents() == by_the_service
+    assert {json.loads(one)["verdict"] for one in by_the_service} > {"healthy"}
+
+
+def test_a_batch_that_is_killed_goes_on(archive: Archive) -> None:
+    with start(archive, "--model", MODEL, "--processes", "1") as process:
+        wait_until(lambda: sum(archive.made()) >= 3, within_s=60)
+        os.kill(process.pid, signal.SIGKILL)
+        process.communicate(timeout=30)
+    done = sum(archive.made())
+    assert 3 <= done < RECORDS
+    assert run(archive, "--model", MODEL, "--processes", "1") == told(RECORDS - done, done)
+    assert archive.made() == [1] * RECORDS
+    jobs = [job.job for one in archive.recordings for job in archive.repository.jobs(one, limit=9).items]
+    assert {job.state for job in jobs} == {JobState.DONE}
+
+
+@contextmanager
+def cluster(directory: Path, port: int = 0) -> Iterator[tuple[str, "subprocess.Popen[str]"]]:
+    """A scheduler and one worker, as people start them; the address, and the scheduler's process."""
+    dask = (sys.executable, "-m", "dask")
+    with ExitStack() as ending:
+
+        def begin(*words: str) -> "subprocess.Popen[str]":
+            process = subprocess.Popen([*dask, *words], stderr=subprocess.PIPE, text=True, cwd=directory)
+            ending.callback(_end, process)
+            return process
+
+        scheduler = begin("scheduler", "--host", "127.0.0.1", "--port", str(port), "--no-dashboard")
+        assert scheduler.stderr is not None
+        address = next(found[0] for line in scheduler.stderr if (found := re.search(r"tcp://[\d.:]+", line)))
+        worker = begin("worker", address, "--nthreads", "1", "--host", "127.0.0.1", "--no-dashboard")
+        assert worker.stderr is not None
+        assert any("Registered to" in line for line in worker.stderr)
+        yield address, scheduler
+
+
+def _end(process: "subprocess.Popen[str]") -> None:
+    process.terminate()
+    process.communicate(timeout=30)
+
+
+def test_a_scheduler_that_dies_is_told_in_one_line_and_the_batch_goes_on(
+    archive: Archive, tmp_path: Path
+) -> None:
+    with (
+        cluster(tmp_path) as (address, scheduler),
+        start(archive, "--scheduler", address, "--model", MODEL) as process,
+    ):
+        wait_until(lambda: sum(archive.made()) >= 2, within_s=60)
+        scheduler.kill()
+        _, complained = process.communicate(timeout=60)
+    done = sum(archive.made())
+    assert process.returncode == 1
+    assert complained == (
+        f"mcc: the Dask scheduler of {address} is gone: {RECORDS - done} recordings are left; start the "
+        "scheduler and its workers again, and the same command goes on with them\n"
+    )
+    with cluster(tmp_path) as (address, _):
+        assert run(archive, "--scheduler", address, "--model", MODEL) == told(RECORDS - done, done)
+    assert archive.made() == [1] * RECORDS
+
+
+def test_an_edited_motors_file_asks_for_the_service_first(archive: Archive, tmp_path: Path) -> None:
+    motors = tmp_path / "motors.toml"
+    text = Path(archive.settings.motors or "").read_text()
+    motors.write_text(text.replace("stator_resistance_ohm = 8.4", "stator_resistance_ohm = 8.5"))
+    archive.config.write_text(archive.config.read_text().replace(str(archive.settings.motors), str(motors)))
+    with start(archive, "--processes", "1") as process:
+        _, complained = process.communicate(timeout=60)
+    assert process.returncode == 1
+    assert complained.startswith("mcc: motor PUMP-A1: expected the parameters that the service noted")
+    assert sum(archive.made()) == 0
