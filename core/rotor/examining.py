@@ -3,7 +3,7 @@
 from functools import partial
 
 from core.diagnosis.acceptance import Accepted
-from core.diagnosis.verdict import Diagnosis
+from core.diagnosis.verdict import Diagnosis, Verdict
 from core.machines.parameters import Motor
 from core.machines.wound_rotor import resistance_at_rings_ohm, resistance_ratios
 from core.rotor.asymmetry import FEWEST_TURNS_OF_ANY, measure_asymmetry
@@ -56,8 +56,8 @@ def examine_rotor(recorded: Baseband, accepted: Accepted, diagnosis: Diagnosis) 
         return _unsupported(duration_s, "the currents are not those of this motor at these voltages")
     at_ends: list[Baseband] = []
     fit, ends = diagnosis.fit, diagnosis.mu_f_ci95
-    # Turns that cannot be excluded need not be there: what is taken off for them could hide a line.
-    if diagnosis.phase is not None and fit is not None and ends is not None and ends[0] > 0.0:
+    # Turns that cannot be excluded need not be there: what is taken off for them would pass for load.
+    if diagnosis.verdict is Verdict.FAULT and fit is not None and ends is not None:
         at_ends = [without_shorted_turns(baseband, motor, level, fit.path_ratio) for level in ends]
         baseband = without_shorted_turns(baseband, motor, fit.mu_f, fit.path_ratio)
     point = running_point(baseband, motor)

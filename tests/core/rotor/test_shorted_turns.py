@@ -9,14 +9,18 @@ import pytest
 
 from core.classification.causes import Cause
 from core.condition.measuring.observing import examine
+from core.diagnosis.acceptance import accept
+from core.diagnosis.stator import diagnose_accepted
+from core.diagnosis.verdict import Verdict
 from core.machines.base import CLARKE_PHASE
 from core.machines.parameters import Connection, Motor
 from core.machines.split_winding import SplitWinding
-from core.rotor.baseband import Baseband
+from core.rotor.baseband import Baseband, baseband_of
+from core.rotor.examining import examine_rotor
 from core.rotor.finding import RotorState
 from core.rotor.shorted_turns import without_shorted_turns
 from testing.machines.cause_records import CauseCase
-from testing.machines.motors import MEDIUM, REFERENCE
+from testing.machines.motors import LARGE, MEDIUM, REFERENCE
 from testing.machines.rotor_records import RotorCase
 
 SEED = 1
@@ -62,6 +66,24 @@ def test_shorted_turns_alone_make_no_uneven_rotor() -> None:
     examined = examine(case.record(), case.known())
     assert examined.rotor is not None
     assert examined.rotor.state is RotorState.HEALTHY
+
+
+def test_turns_that_cannot_be_excluded_take_nothing_off() -> None:
+    """They would take a part of the load with them, and a broken cage would look worse than it is."""
+    case = RotorCase(LARGE, 0.5, broken_share=3.0 / 28.0)
+    acceptance = accept(case.record(5.0), LARGE)
+    accepted, diagnosis = acceptance.accepted, diagnose_accepted(acceptance)
+    assert accepted is not None
+    assert diagnosis.fit is not None
+    suspected = replace(
+        diagnosis,
+        verdict=Verdict.WATCH,
+        theta_f=1,
+        mu_f_ci95=(0.003, 0.012),
+        fit=replace(diagnosis.fit, mu_f=0.007, path_ratio=5.0),
+    )
+    found = examine_rotor(baseband_of(accepted), accepted, suspected)
+    assert found.severity_dB == pytest.approx(case.asymmetry_dB, abs=1.0)
 
 
 def _steady(volts: float, current: complex, w_s: float) -> Baseband:
