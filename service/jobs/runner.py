@@ -84,6 +84,7 @@ class JobRunner:
         self._renew_at_s = 0.0
         self._pool = workers or WorkerPool(limits.workers, prepare_worker, is_ending)
         self._pool_problem: str | None = None
+        self._folder_is_gone = False
         self._in_flight: dict[str, Future[Outcome]] = {}
         self._may_hold_unknown_jobs = False
         self._results: deque[tuple[ClaimedJob, Future[Outcome]]] = deque()
@@ -146,9 +147,13 @@ class JobRunner:
 
     def _store_problem(self) -> str | None:
         """Return why no recording can be read. Jobs wait meanwhile; none of their recordings is at fault."""
-        if self._store.is_there():
+        was_gone, self._folder_is_gone = self._folder_is_gone, not self._store.is_there()
+        if not self._folder_is_gone:
             return None
-        return f"{self._store.root}: expected the folder of the recordings, found none: is it mounted?"
+        problem = f"{self._store.root}: expected the folder of the recordings, found none: is it mounted?"
+        if not was_gone:
+            log.warning("jobs wait for the folder of the recordings", reason=problem)
+        return problem
 
     def _has_free_worker(self) -> bool:
         others = 0 if self._conditions is None else self._conditions.tasks_under_way
@@ -240,11 +245,14 @@ class JobRunner:
         try:
             entry = self._store.entry(claimed.digest)
             baseline = tuple(self._store.entry(digest) for digest in claimed.baseline)
-        except RecordingStoreError as error:
-            self._repository.reject_recording(job.id, str(error), now_ns=time.time_ns(), runner=self._id)
-            return True
-        except OSError as error:  # the store's disk or its permissions, which somebody may mend
-            self._retry(claimed, str(error))
+        except (RecordingStoreError, OSError) as error:
+            if self._store_problem() is not None:  # it was there before this claim
+                self._release(job.id)
+                return False
+            if isinstance(error, RecordingStoreError):
+                self._repository.reject_recording(job.id, str(error), now_ns=time.time_ns(), runner=self._id)
+            else:  # the store's disk or its permissions, which somebody may mend
+                self._retry(claimed, str(error))
             return True
         task = DiagnosisTask(
             entry,
@@ -291,7 +299,7 @@ class JobRunner:
     def _write_back(self, claimed: ClaimedJob, future: "Future[Outcome]") -> None:
         """Write back what became of a job. Raises SQLAlchemyError, NotFoundError."""
         error = None if future.cancelled() else future.exception()
-        if future.cancelled() or isinstance(error, BrokenExecutor):  # the pool's end, not the job's fault
+        if future.cancelled() or self._is_not_its_fault(future):
             self._repository.release_job(claimed.job.id, runner=self._id)
         elif error is None:
             self._keep(claimed, future.result())
@@ -301,6 +309,13 @@ class JobRunner:
             self._retry(claimed, f"the worker process died (exit code {error.exitcode})")
         else:
             self._retry(claimed, f"{type(error).__name__}: {error}")
+
+    def _is_not_its_fault(self, future: "Future[Outcome]") -> bool:
+        """Return whether a job came to nothing by the pool's end, or as no recording can be read here."""
+        error = future.exception()
+        if error is None and not isinstance(future.result(), Rejected):
+            return False
+        return isinstance(error, BrokenExecutor) or self._store_problem() is not None
 
     def _keep(self, claimed: ClaimedJob, outcome: Outcome) -> None:
         """Write back what a worker returned. Raises SQLAlchemyError."""

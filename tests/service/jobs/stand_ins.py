@@ -20,6 +20,11 @@ STRANGE = "channel IA\0\ud800 "
 
 LONG = "x" * 1_000_000
 
+REJECTIONS = {
+    "reject": "E.CFF: line 1: expected a FID, found nothing",
+    "reject strange text": STRANGE + LONG,
+}
+
 (FINDING,) = fault().quality
 RESULTS = {
     "not a number": replace(fault(), mu_f=float("nan"), residual_rms_A=float("nan")),
@@ -34,17 +39,37 @@ RESULTS = {
 }
 
 
+UNMOUNTING = ("reject as the folder goes", "raise as the folder goes")
+
+
+def unmount(root: Path) -> None:
+    """Take the folder of all recordings away, as a share that is lost; `mount` brings it back."""
+    root.rename(root.with_suffix(".elsewhere"))
+
+
+def mount(root: Path) -> None:
+    root.with_suffix(".elsewhere").rename(root)
+
+
+def lose_the_folder(task: DiagnosisTask, told: str) -> Outcome:
+    unmount(task.entry.parents[2])
+    if told == "raise as the folder goes":
+        raise FileNotFoundError(task.entry)
+    return Rejected(f"{task.entry}: no such file")
+
+
 def act_as_told(task: DiagnosisTask) -> Outcome:
     told = task.entry.read_text()
     first_time = task.entry.with_suffix(".tried")
-    if told == "reject":
-        return Rejected("E.CFF: line 1: expected a FID, found nothing")
+    if told in REJECTIONS:
+        return Rejected(REJECTIONS[told])
     if told == "raise":
         raise ArithmeticError("no such number")
     if told == "raise strange text":
         raise ArithmeticError(STRANGE + LONG)
-    if told == "reject strange text":
-        return Rejected(STRANGE + LONG)
+    if told in UNMOUNTING and not first_time.exists():
+        first_time.touch()
+        return lose_the_folder(task, told)
     if told == "slow":
         time.sleep(0.05)
     if told in RESULTS:

@@ -13,6 +13,7 @@ from threading import Event
 
 import pytest
 from sqlalchemy import Engine
+from structlog.testing import capture_logs
 
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect
@@ -20,7 +21,16 @@ from service.storage.records import RemoteRecord
 from service.storage.states import AlarmKind, JobState, RecordingRequestState, RecordingState
 from testing.waiting import wait_until
 from tests.service.jobs.running import LIMITS, add, ended, running
-from tests.service.jobs.stand_ins import GO, RESULTS, STRANGE, fail_to_start, prepare_when_told
+from tests.service.jobs.stand_ins import (
+    GO,
+    RESULTS,
+    STRANGE,
+    UNMOUNTING,
+    fail_to_start,
+    mount,
+    prepare_when_told,
+    unmount,
+)
 
 LEASE_S = 1.5
 
@@ -131,6 +141,36 @@ def started(repository: Repository, recording_id: str) -> list[tuple[str, int]]:
     """The recording's jobs that were claimed, with the time of that."""
     jobs = [one.job for one in repository.jobs(recording_id, limit=100).items]
     return [(job.id, job.started_ns) for job in jobs if job.started_ns is not None]
+
+
+class LostWhileClaiming(RecordingStore):
+    """A store whose folder goes as the first recording is looked up, which is after the runner has looked."""
+
+    was_lost = False
+
+    def entry(self, digest: str) -> Path:
+        if not self.was_lost:
+            self.was_lost = True
+            unmount(self.root)
+        return super().entry(digest)
+
+
+@pytest.mark.parametrize("told", ["fine", *UNMOUNTING])
+def test_no_recording_is_at_fault_where_the_folder_of_all_is_gone(
+    repository: Repository, store: RecordingStore, told: str
+) -> None:
+    recording_id = add(repository, store, told)
+    theirs = LostWhileClaiming(store.root) if told == "fine" else store
+    with capture_logs() as said, running(repository, theirs) as runner:
+        wait_until(lambda: "is it mounted?" in (runner.problem() or ""), within_s=60)
+        (found,) = repository.jobs(recording_id, limit=5).items
+        assert (found.job.state, found.job.attempts) == (JobState.QUEUED, 0)
+        assert repository.recording(recording_id).state is RecordingState.FETCHED
+        mount(store.root)
+        wait_until(lambda: ended(repository, recording_id))
+    assert repository.recording(recording_id).state is RecordingState.DIAGNOSED
+    warnings = [one["event"] for one in said if one["log_level"] == "warning"]
+    assert warnings == ["jobs wait for the folder of the recordings"]
 
 
 def test_a_job_that_takes_too_long_is_given_up(repository: Repository, store: RecordingStore) -> None:
