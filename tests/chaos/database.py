@@ -16,8 +16,8 @@ from sqlalchemy.pool import NullPool
 from scl import Address
 from service.demo.addresses import free_ports
 from testing.service.postgresql import INSTALLED, OPTIONS, OWNER, PostgresServer, binaries, serving_postgresql
+from testing.tcp_proxy import Proxy
 from tests.chaos.history import History
-from tests.chaos.proxy import Proxy
 from tests.chaos.schedule import Action
 
 LOCK_LIMIT_S = 30.0

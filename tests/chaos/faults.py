@@ -10,11 +10,11 @@ from threading import Lock
 
 from core.units import NANOSECONDS_PER_SECOND
 from mms import Client, MmsError
+from testing.tcp_proxy import Proxy
 from tests.chaos.database import Database
 from tests.chaos.disk import Disk
 from tests.chaos.history import History
 from tests.chaos.plant import SWITCHED, ChaosPlant
-from tests.chaos.proxy import Proxy
 from tests.chaos.schedule import Action
 from tests.chaos.served import ServedService
 from tests.chaos.simulators import SimulatorProcess

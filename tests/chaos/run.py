@@ -10,6 +10,7 @@ from subprocess import CalledProcessError
 
 from service.client.rest_client import ServiceClient
 from service.demo.addresses import free_ports
+from testing.tcp_proxy import Proxy
 from testing.waiting import eventually
 from tests.chaos import account
 from tests.chaos.database import Database, serving_database
@@ -21,7 +22,6 @@ from tests.chaos.history import History
 from tests.chaos.ledger import Ledger
 from tests.chaos.order import Order
 from tests.chaos.plant import ChaosPlant, make_plant
-from tests.chaos.proxy import Proxy
 from tests.chaos.result import Result, result_of
 from tests.chaos.schedule import OWN_TRIGGER, TRIGGER, Action, make_schedule
 from tests.chaos.served import ServedService, handles_of, running

@@ -9,8 +9,8 @@ import pytest
 from scl import Address
 from testing.ports import LOOPBACK, free_port
 from testing.relays.serving import mute_server
+from testing.tcp_proxy import Proxy
 from testing.waiting import wait_until
-from tests.chaos.proxy import Proxy
 
 CLIENTS = 5
 

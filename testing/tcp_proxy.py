@@ -1,4 +1,4 @@
-"""The network between the service and each relay: a TCP relay that cuts, freezes and refuses on demand."""
+"""The network between clients and their servers: a TCP proxy that cuts, freezes and refuses on demand."""
 
 import asyncio
 import socket
@@ -18,7 +18,7 @@ RESET = struct.pack("ii", 1, 0)
 
 
 class Link:
-    """The way to one relay. Used by the proxy's own thread, but for the counter."""
+    """The way to one server. Used by the proxy's own thread, but for the counter."""
 
     def __init__(self, own: Address, seen: Address) -> None:
         self.own = own
@@ -61,15 +61,15 @@ class Link:
             return
         try:
             far_reader, far_writer = await asyncio.open_connection(self.own.host, self.own.port)
-        except OSError:  # the relay is off
+        except OSError:  # the server is off
             _reset(writer)
             return
         both = {writer, far_writer}
         self._writers |= both
         try:
             ways = [
-                asyncio.create_task(self._carry(reader, far_writer, to_service=False)),
-                asyncio.create_task(self._carry(far_reader, writer, to_service=True)),
+                asyncio.create_task(self._carry(reader, far_writer, to_client=False)),
+                asyncio.create_task(self._carry(far_reader, writer, to_client=True)),
             ]
             await asyncio.wait(ways, return_when=asyncio.FIRST_COMPLETED)
             for way in ways:
@@ -81,13 +81,13 @@ class Link:
                 _reset(each)
 
     async def _carry(
-        self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter, *, to_service: bool
+        self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter, *, to_client: bool
     ) -> None:
         """Until one of the two ends, however it ends."""
         with suppress(OSError):
             while chunk := await reader.read(CHUNK_BYTES):
                 await self.flowing.wait()
-                if to_service:
+                if to_client:
                     self.carried_bytes += len(chunk)
                     if self._is_over(len(chunk)):
                         writer.write(chunk[: len(chunk) // 2])
@@ -109,36 +109,36 @@ class Link:
 
 
 class Proxy:
-    """The links of all relays, in a thread of their own while the context is entered."""
+    """The links to all servers, in a thread of their own while the context is entered."""
 
     def __init__(self, ways: Mapping[str, tuple[Address, Address]]) -> None:
-        """`ways`: own and seen address of each relay."""
+        """`ways`: own address of each server, and the one at which its clients see it."""
         self._loop = asyncio.new_event_loop()
         self._thread = threading.Thread(target=self._loop.run_forever, name="proxy")
         self.links = {name: Link(own, seen) for name, (own, seen) in ways.items()}
 
     @property
     def carried_bytes(self) -> int:
-        """From all relays to the service."""
+        """From all servers to their clients."""
         return sum(link.carried_bytes for link in self.links.values())
 
-    def cut(self, relay: str) -> None:
-        self._loop.call_soon_threadsafe(self.links[relay].cut)
+    def cut(self, name: str) -> None:
+        self._loop.call_soon_threadsafe(self.links[name].cut)
 
-    def cut_after(self, relay: str, size: int) -> None:
-        """Cut once the relay has sent so much more."""
-        self._loop.call_soon_threadsafe(setattr, self.links[relay], "cut_after_bytes", size)
+    def cut_after(self, name: str, size: int) -> None:
+        """Cut once the server has sent so much more."""
+        self._loop.call_soon_threadsafe(setattr, self.links[name], "cut_after_bytes", size)
 
-    def refuse(self, relay: str, *, on: bool) -> None:
+    def refuse(self, name: str, *, on: bool) -> None:
         """Turn away new connections; what is connected is cut."""
-        link = self.links[relay]
+        link = self.links[name]
         self._loop.call_soon_threadsafe(setattr, link, "refuses", on)
         if on:
-            self.cut(relay)
+            self.cut(name)
 
-    def freeze(self, relay: str, *, on: bool) -> None:
+    def freeze(self, name: str, *, on: bool) -> None:
         """Carry nothing, and lose nothing: what was sent arrives when it thaws."""
-        flowing = self.links[relay].flowing
+        flowing = self.links[name].flowing
         self._loop.call_soon_threadsafe(flowing.clear if on else flowing.set)
 
     def __enter__(self) -> Self:
