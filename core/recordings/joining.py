@@ -9,6 +9,7 @@ in all channels together.
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from pathlib import PurePath
 from typing import Final
 
 import numpy as np
@@ -176,7 +177,7 @@ def seam(earlier: Recording, later: Recording) -> Seam:
         raise JoinError(
             later.source,
             "time of its first sample",
-            expected=f"after that of {earlier.source} and a cycle or more before its end",
+            expected=f"after that of {_name(earlier)} and a cycle or more before its end",
             found=f"{stamped / rate_hz:.3f} s after it, and {shared / rate_hz:.3f} s before its end",
         )
     reach = int(MOST_STAMP_ERROR_CYCLES * cycle)
@@ -193,7 +194,7 @@ def seam(earlier: Recording, later: Recording) -> Seam:
         raise JoinError(
             later.source,
             "waveforms",
-            expected=f"those of {earlier.source} at the same time",
+            expected=f"those of {_name(earlier)} at the same time",
             found=f"others, by {100 * difference:.0f} %: the clock was set, or they are of another motor",
         )
     return Seam(
@@ -204,20 +205,25 @@ def seam(earlier: Recording, later: Recording) -> Seam:
     )
 
 
+def _name(recording: Recording) -> str:
+    """Return the file's name alone: where it lies tells a reader nothing, and may be a store's own matter."""
+    return PurePath(recording.source).name
+
+
 def _require_alike(earlier: Recording, later: Recording) -> None:
     names = [[(one.name, one.unit) for one in record.channels] for record in (earlier, later)]
     if names[0] != names[1]:
         raise JoinError(
             later.source,
             "channels",
-            expected=f"those of {earlier.source}",
+            expected=f"those of {_name(earlier)}",
             found="others, or others in order",
         )
     if abs(later.sample_rate_hz / earlier.sample_rate_hz - 1) > SAME_RATE:
         raise JoinError(
             later.source,
             "sampling rate",
-            expected=f"{earlier.sample_rate_hz:g} Hz, that of {earlier.source}",
+            expected=f"{earlier.sample_rate_hz:g} Hz, that of {_name(earlier)}",
             found=f"{later.sample_rate_hz:g} Hz",
         )
     for record in (earlier, later):

@@ -8,15 +8,18 @@ because it follows from its parts already. Of the rotor it tells in their place,
 from collections.abc import Mapping
 from concurrent.futures import TimeoutError as NoAnswerInTimeError
 from pathlib import PurePath
+from typing import Final
 
 import structlog
 
+from core.operation import Operation
+from core.time_stamps import rfc3339
 from core.units import NANOSECONDS_PER_SECOND
 from service.background.joined_files import JoinedFile, JoinTask, NotJoined, join_files
 from service.recording_store.store import RecordingStore, RecordingStoreError
 from service.storage import Repository
 from service.storage.errors import FolderGoneError
-from service.storage.records import Series
+from service.storage.records import Series, SeriesEnd
 from service.waveforms.computing import ANSWER_TIMEOUT_S, Compute, NoAnswerError
 
 log = structlog.get_logger(__name__)
@@ -24,6 +27,15 @@ log = structlog.get_logger(__name__)
 PERIOD_S = 2.0
 PATIENCE_S = 120.0
 """A series that lacks recordings is joined from those that came, once so much time has passed."""
+
+ENDS: Final[Mapping[Operation, str]] = {
+    Operation.TRIP: "the relay trips the motor",
+    Operation.STOP: "the motor is switched off",
+    Operation.START: "the motor starts",
+    Operation.NOT_RUNNING: "the motor stands",
+}
+"""What a motor does that does not run. Such a recording is left out whole: at which of its samples the motor
+still runs is not kept with it, and all that is lost is a fraction of a second."""
 
 
 class SeriesJoiner:
@@ -56,6 +68,9 @@ class SeriesJoiner:
                 self._join(series, now_ns)
 
     def _join(self, series: Series, now_ns: int) -> None:
+        if series.ended_by is not None and len(series.digests) < 2:
+            self._repository.leave_unjoined(series, f"not joined: {_end(series.ended_by)}")
+            return
         try:
             entries = tuple(self._store.entry(digest) for digest in series.digests)
         except RecordingStoreError as error:
@@ -76,9 +91,12 @@ class SeriesJoiner:
 
     def _keep(self, series: Series, joined: JoinedFile, first: PurePath, now_ns: int) -> None:
         stored = self._store.store({f"{first.stem}_{len(joined.parts)}.CFF": joined.content})
-        remark = "; ".join(joined.refusals) or None
-        if remark is None and not series.is_complete:
-            remark = f"only {len(joined.parts)} of its recordings came"
+        reasons = list(joined.refusals)
+        if series.ended_by is not None:
+            reasons.append(f"shorter than asked for: {_end(series.ended_by)}")
+        elif not reasons and not series.is_complete:
+            reasons.append(f"only {len(joined.parts)} of its recordings came")
+        remark = "; ".join(reasons) or None
         try:
             made = self._repository.add_joined(stored, series, joined.parts, remark, now_ns=now_ns)
         except FolderGoneError:  # a recording of the same content was deleted just now: the next round
@@ -90,3 +108,7 @@ class SeriesJoiner:
             parts=len(joined.parts),
             duration_s=round(joined.duration_s, 3),
         )
+
+
+def _end(ended_by: SeriesEnd) -> str:
+    return f"{ENDS[ended_by.operation]} in {ended_by.name} at {rfc3339(ended_by.recorded_ns)}"

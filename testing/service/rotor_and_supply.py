@@ -127,6 +127,7 @@ class ExaminedRecordings:
             tuple(parts),
             tuple(row.digest or "" for row in rows),
             tuple(row.recorded_ns or 0 for row in rows),
+            ended_by=None,
             is_complete=True,
         )
 

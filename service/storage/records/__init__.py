@@ -68,6 +68,7 @@ from service.storage.records.recordings import (
     RecordLength,
     RemoteRecord,
     Series,
+    SeriesEnd,
     SeriesHistory,
 )
 from service.storage.records.relay_reports import MeteredHours, RelayEvent
@@ -167,6 +168,7 @@ __all__ = [
     "RotorEntry",
     "Sample",
     "Series",
+    "SeriesEnd",
     "SeriesHistory",
     "SiteEntry",
     "StartEntry",

@@ -96,11 +96,22 @@ class RecordLength:
 
 
 @dataclass(frozen=True, slots=True)
-class Series:
-    """The recordings of a series that somebody asked for, by their times.
+class SeriesEnd:
+    """What ended a series: the name of a recording, its time [ns UTC], and what the motor does in it."""
 
-    digests: their places in the recording store.  is_complete: whether all are there that the relay was
-    triggered for.
+    name: str
+    recorded_ns: int
+    operation: Operation
+
+
+@dataclass(frozen=True, slots=True)
+class Series:
+    """The recordings of a series that somebody asked for, by their times, as long as the motor runs.
+
+    digests: their places in the recording store.  ended_by: the first one that shows the motor do something
+    else than run; neither it nor a later one is among them.  is_complete: whether no more are to come (all
+    are there that the relay was triggered for, or the motor runs no longer) and it is known what it does in
+    each.
     """
 
     request_id: str
@@ -108,6 +119,7 @@ class Series:
     recording_ids: tuple[str, ...]
     digests: tuple[str, ...]
     recorded_ns: tuple[int, ...]
+    ended_by: SeriesEnd | None
     is_complete: bool
 
 

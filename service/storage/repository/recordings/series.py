@@ -4,15 +4,16 @@ from sqlalchemy import select, update
 from sqlalchemy.orm import Session
 
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
+from core.operation import EXPECTED
 from core.units import NANOSECONDS_PER_DAY, NANOSECONDS_PER_SECOND
 from service.recording_store.store import StoredRecording
 from service.storage.models import MotorRow, RecordingRequestRow, RecordingRow
-from service.storage.records import Series, SeriesHistory
+from service.storage.records import Series, SeriesEnd, SeriesHistory
 from service.storage.repository.recordings.folders import discard_folder, require_folder
 from service.storage.repository.recordings.recordings import brought, fill, new_job, stored_before
 from service.storage.repository.recordings.requests import KIND
 from service.storage.repository.sessions import Sessions, found
-from service.storage.states import JobPriority, RecordingRequestState, RecordingSource
+from service.storage.states import JobPriority, RecordingRequestState, RecordingSource, RecordingState
 from service.storage.texts import storable
 
 OLDEST_NS = NANOSECONDS_PER_DAY
@@ -146,11 +147,22 @@ def _series(session: Session, request: RecordingRequestRow) -> Series | None:
         .order_by(RecordingRow.recorded_ns, RecordingRow.id)
     )
     rows = session.scalars(query).all()
+    end = next((number for number, row in enumerate(rows) if row.operation in EXPECTED), len(rows))
+    running = rows[:end]
     return Series(
         request.id,
         request.motor,
-        tuple(row.id for row in rows),
-        tuple(row.digest for row in rows if row.digest is not None),
-        tuple(row.recorded_ns for row in rows if row.recorded_ns is not None),
-        is_complete=len(rows) >= (request.triggers or 1),
+        tuple(row.id for row in running),
+        tuple(row.digest for row in running if row.digest is not None),
+        tuple(row.recorded_ns for row in running if row.recorded_ns is not None),
+        ended_by=_end(rows[end]) if end < len(rows) else None,
+        # A recording that waits for its diagnosis may be the one of the trip.
+        is_complete=(end < len(rows) or len(rows) >= (request.triggers or 1))
+        and all(row.state is not RecordingState.FETCHED for row in running),
     )
+
+
+def _end(row: RecordingRow) -> SeriesEnd:
+    assert row.recorded_ns is not None  # noqa: S101 - the query asks for it
+    assert row.operation is not None  # noqa: S101 - it is one of EXPECTED
+    return SeriesEnd(row.name, row.recorded_ns, row.operation)

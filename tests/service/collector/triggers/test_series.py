@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from core.operation import Operation
 from core.recordings import read
 from ied_sim.relay.event_recorder import RecorderSettings
 from service.background.joining import SeriesJoiner
@@ -154,6 +155,50 @@ def test_what_came_of_a_series_is_joined_when_the_rest_does_not_come(ready: Benc
     made = here.repository.recording(request.joined_recording_id or "")
     assert made.parts is not None
     assert len(made.parts) == 2
+
+
+@pytest.mark.parametrize(("before", "parts"), [(3, 3), (0, 0)])
+def test_a_trip_ends_a_series(ready: Bench, tmp_path: Path, before: int, parts: int) -> None:
+    """What came before it is joined at once, from two recordings on; the one of the trip is none of them."""
+    scenario = scenario_of("sel-710-ed2", recorder=RECORDER)
+    with simulated(tmp_path / "relays", scenario) as served:
+        here = of(ready, served, "EVENTS")
+        with here.session() as session:
+            assert eventually(lambda: here.link() is LinkState.UP)
+            once = ask(here, None)
+            session.wake()
+            assert eventually(lambda: here.requested(once).state is RecordingRequestState.FETCHED, 20)
+            diagnose_all(here)
+            wanted = ask(here, LONGER_S)
+            session.wake()
+            assert eventually(lambda: fetched(here, 1 + before), 30)
+            served.relay._trip(["overcurrent"], served.relay._clock.now_ns())
+            assert eventually(lambda: here.requested(wanted).state is RecordingRequestState.FETCHED, 30)
+            assert eventually(lambda: trips_and_standstills(here), 30)
+    joiner(here).join_ready(time.time_ns())
+    request = here.requested(wanted)
+    ended_by = trips_and_standstills(here)[0]
+    assert request.joined_remark is not None
+    assert ended_by.name in request.joined_remark
+    assert "the relay trips the motor" in request.joined_remark
+    assert "/" not in request.joined_remark
+    if parts == 0:
+        assert request.joined_recording_id is None
+        return
+    made = here.repository.recording(request.joined_recording_id or "")
+    assert made.parts is not None
+    assert len(made.parts) >= parts
+    for part in made.parts:
+        assert here.repository.recording(part).operation is Operation.RUNNING
+    diagnose_all(here)
+    assert here.repository.recording(made.id).operation is Operation.RUNNING
+
+
+def trips_and_standstills(bench: Bench) -> list[RecordingEntry]:
+    """Have all recordings diagnosed, and return those in which the motor runs no longer, by their time."""
+    diagnose_all(bench)
+    found = [one for one in bench.recordings() if one.operation in {Operation.TRIP, Operation.NOT_RUNNING}]
+    return sorted(found, key=lambda one: one.recorded_ns or 0)
 
 
 @pytest.mark.parametrize(
