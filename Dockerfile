@@ -6,7 +6,8 @@ RUN python -m venv /opt/statorwatch
 WORKDIR /src
 # The libraries come first: they change seldom, and this layer is then kept.
 COPY pyproject.toml constraints.txt ./
-RUN python -c "import tomllib; print(*tomllib.load(open('pyproject.toml', 'rb'))['project']['dependencies'], sep='\n')" > requirements.txt \
+# PostgreSQL's driver is among them, since an image cannot be added to.
+RUN python -c "import tomllib; p = tomllib.load(open('pyproject.toml', 'rb'))['project']; print(*p['dependencies'], *p['optional-dependencies']['postgres'], sep='\n')" > requirements.txt \
  && /opt/statorwatch/bin/pip install --constraint constraints.txt --requirement requirements.txt
 COPY . .
 # What builds the wheel, pinned too: pip up to 25.2 reads the first of the two for it, later ones the second.
@@ -21,7 +22,7 @@ RUN echo "setuptools==84.2.1" > build-constraints.txt \
 FROM docker.io/library/python:3.11-slim-bookworm
 LABEL org.opencontainers.image.title="StatorWatch" org.opencontainers.image.licenses="GPL-3.0-or-later"
 RUN useradd --uid 10001 --no-create-home --home-dir /tmp --shell /usr/sbin/nologin statorwatch \
- && install --directory --owner statorwatch --group statorwatch --mode 0750 /data /token
+ && install --directory --owner statorwatch --group statorwatch --mode 0750 /data /token /recordings
 COPY --from=build /opt/statorwatch /opt/statorwatch
 ENV PATH=/opt/statorwatch/bin:$PATH PYTHONUNBUFFERED=1 PYTHONDONTWRITEBYTECODE=1 OPENBLAS_NUM_THREADS=1
 # The machine models, compiled. Numba compares a source's time to the nanosecond, layers keep whole seconds.

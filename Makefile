@@ -4,6 +4,7 @@
 # make corpus DIR=FOLDER     (how recordings and SCL files of a folder are read: docs/evidence/corpus.md)
 # make hostile CASES=10000 SEED=1     (a relay that answers nonsense: docs/evidence/interoperability.md)
 # make compose-test COMPOSE="docker compose"     (the demo enterprise in containers, run for real)
+# make compose-test-hosts COMPOSE="docker compose"     (the same on PostgreSQL and several hosts; needs the database's image)
 PYTHON ?= python3
 BIN := .venv/bin
 STAMP := .venv/.installed
@@ -13,7 +14,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 # docker compose where its engine answers, else nothing; COMPOSE="podman-compose" make compose-test: another one
 COMPOSE ?= $(shell docker compose version >/dev/null 2>&1 && docker info >/dev/null 2>&1 && echo docker compose)
 
-.PHONY: install demo test test-all hostile chaos compose-test lint docs bench corpus interop fuzz lock clean
+.PHONY: install demo test test-all hostile chaos compose-test compose-test-hosts lint docs bench corpus interop fuzz lock clean
 .DEFAULT_GOAL := install
 
 install: $(WARM)
@@ -63,12 +64,16 @@ compose-test: install
 	@test -n "$(COMPOSE)" || { echo "compose-test: no Docker engine answers; name a compose command with COMPOSE" >&2; exit 1; }
 	$(BIN)/python -m tests.deployment.enterprise $(COMPOSE)
 
+compose-test-hosts: install
+	@test -n "$(COMPOSE)" || { echo "compose-test-hosts: no Docker engine answers; name a compose command with COMPOSE" >&2; exit 1; }
+	$(BIN)/python -m tests.deployment.several_hosts $(COMPOSE)
+
 lint: install
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
-	$(BIN)/check-jsonschema --builtin-schema vendor.compose-spec docker-compose.yml
+	$(BIN)/check-jsonschema --builtin-schema vendor.compose-spec docker-compose.yml examples/several-hosts.yml
 	$(BIN)/check-jsonschema --builtin-schema vendor.github-workflows .github/workflows/ci.yml
 
 # What pages have from the code: the drawings of the architecture, the commands and their options.

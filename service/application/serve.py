@@ -14,7 +14,6 @@ from tempfile import TemporaryFile, gettempdir
 from threading import Event
 
 import structlog
-from sqlalchemy.exc import OperationalError
 
 from service.api.access.certificate import CertificateError, ServerCertificate
 from service.api.context import ApiContext
@@ -39,7 +38,7 @@ from service.process.single_instance import exclusive
 from service.process.termination import Termination
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect, migrate
-from service.storage.database_url import readable_url
+from service.storage.answering import answering
 from service.web.app import create_site, end_streams
 
 log = structlog.get_logger(__name__)
@@ -118,8 +117,8 @@ def _certificate(settings: Settings) -> ServerCertificate | None:
 
 
 def _prepared(settings: Settings, plant: Plant) -> Repository:
-    """Open the database and bring it up to date. Raises StorageError, ServeError."""
-    try:
+    """Open the database and bring it up to date. Raises StorageError."""
+    with answering(settings.database_url):
         migrate(settings.database_url)
         repository = Repository(connect(settings.database_url))
         repository.sync_plant(plant, noted_ns=time.time_ns())
@@ -128,19 +127,14 @@ def _prepared(settings: Settings, plant: Plant) -> Repository:
         repository.settle_alarms(now_ns=time.time_ns(), rules=settings.alarms.condition_rules)
         repository.settle_rotor_alarms(now_ns=time.time_ns())
         repository.reset_links(now_ns=time.time_ns())
-    except OperationalError as error:
-        raise ServeError(
-            f"{readable_url(settings.database_url)}: expected a database that can be read and written "
-            f"(setting database_url), found: {error.orig}; is its disk full, or its server down?"
-        ) from error
     return repository
 
 
 def collect(settings: Settings) -> None:
     """Run gateways alone, which share the relays of a service elsewhere, until SIGTERM or SIGINT.
 
-    Raises PlantError, SettingsError, StorageError, AlreadyRunningError, ServeError,
-    sqlalchemy.exc.SQLAlchemyError (that service's database does not answer).
+    Raises PlantError, SettingsError, StorageError (also where that service's database does not answer),
+    AlreadyRunningError, ServeError.
     """
     end = Event()
     for number in (signal.SIGTERM, signal.SIGINT):
@@ -149,7 +143,8 @@ def collect(settings: Settings) -> None:
     require_writable(settings.data_directory)
     with exclusive(settings.data_directory / "service.lock", wait=False):
         repository = Repository(connect(settings.database_url))
-        repository.check()
+        with answering(settings.database_url):
+            repository.check()
         with running([GatewayProcesses(settings, plant, repository)]):
             log.info("collecting for a service elsewhere", relays=len(plant.relays))
             end.wait()

@@ -17,6 +17,7 @@ from service.process.installation import installation_id
 from service.process.single_instance import exclusive
 from service.recording_store.store import RecordingStore, RecordingStoreError
 from service.storage import Repository, connect
+from service.storage.answering import answering
 from service.storage.database_url import parsed_url
 from service.storage.migrations import require_current_tables
 from service.timing.database_silence import database_trouble
@@ -33,8 +34,8 @@ LATEST = 20
 def work(settings: Settings) -> None:
     """Take jobs of a service elsewhere until SIGTERM or SIGINT; what is under way then goes back.
 
-    Raises PlantError, SettingsError, StorageError, AlreadyRunningError, ServeError (also where the service
-    gets other motors meanwhile), sqlalchemy.exc.SQLAlchemyError (the database does not answer).
+    Raises PlantError, SettingsError, StorageError (also where the database does not answer),
+    AlreadyRunningError, ServeError (also where the service gets other motors meanwhile).
     """
     end = Event()
     for number in (signal.SIGTERM, signal.SIGINT):
@@ -46,7 +47,8 @@ def work(settings: Settings) -> None:
         )
     plant = checked_plant(settings)
     motors = {motor.name: motor.motor for motor in plant.motors}
-    require_current_tables(settings.database_url)
+    with answering(settings.database_url):
+        require_current_tables(settings.database_url)
     require_writable(settings.data_directory)
     with exclusive(settings.data_directory / "service.lock", wait=False):
         repository = Repository(connect(settings.database_url))

@@ -9,11 +9,13 @@ import time
 from contextlib import suppress
 from pathlib import Path
 
+from core.error_words import one_line
 from service.access.bearer_secrets import digest_of, new_token
 from service.access.login_links import address_of, is_good, new_login_link
 from service.client.credentials import write_secret
 from service.configuration.settings import Settings
 from service.storage import Repository, connect, migrate
+from service.storage.answering import DatabaseUnusableError, answering
 from service.storage.errors import UserExistsError
 from service.storage.records import Actor, Role
 
@@ -71,11 +73,16 @@ def _token(repository: Repository, kept: str | None) -> str:
 
 
 def main(file: Path) -> None:
-    """Have a file with a token of the demo's user."""
+    """Have a file with a token of the demo's user; end with one line where the database does not answer."""
     settings = Settings.load()
     settings.data_directory.mkdir(parents=True, exist_ok=True)
     kept = file.read_text(encoding="utf-8").strip() if file.exists() else None
-    write_secret(file, demo_token(settings.database_url, kept))
+    try:
+        with answering(settings.database_url):
+            token = demo_token(settings.database_url, kept)
+    except DatabaseUnusableError as error:
+        sys.exit(one_line(str(error)))
+    write_secret(file, token)
 
 
 if __name__ == "__main__":

@@ -29,16 +29,19 @@ WAITS_S = "statorwatch_busy_timeout_s"
 """This execution option says how long a writing connection waits for its turn [s]."""
 
 
-SILENCE = {
+POSTGRESQL_PARAMETERS = {
+    # Without it, texts of a database of no encoding (SQL_ASCII, where a server has no locale) are bytes.
+    "client_encoding": "utf8",
     "connect_timeout": "10",
     "keepalives_idle": "10",
     "keepalives_interval": "5",
     "keepalives_count": "3",
     "tcp_user_timeout": "25000",
 }
-"""A PostgreSQL server that is cut off without a word is given up after 25 s, not after hours.
+"""Parameters of libpq, where the URL does not say others.
 
-Parameters of libpq, in s, and the last one in ms. What the URL says itself stands."""
+A server that is cut off without a word is given up after 25 s, not after hours. Times are in s, the last
+one is in ms."""
 
 
 def connect(url: str, *, busy_timeout_s: float = BUSY_TIMEOUT_S) -> Engine:
@@ -55,7 +58,7 @@ def connect(url: str, *, busy_timeout_s: float = BUSY_TIMEOUT_S) -> Engine:
             parsed = parsed.set(drivername=POSTGRESQL)
         try:
             return create_engine(
-                parsed.set(query=SILENCE | dict(parsed.query)),
+                parsed.set(query=POSTGRESQL_PARAMETERS | dict(parsed.query)),
                 json_serializer=serializer,
                 pool_pre_ping=True,
             )

@@ -107,14 +107,16 @@ class PostgresServer:
         return f"postgresql+psycopg://{OWNER}@/{database}?host={self._directory}&port={port}"
 
     @contextmanager
-    def database(self, *, migrated: bool = True) -> Iterator[str]:
-        """The URL of a database of its own."""
+    def database(self, *, migrated: bool = True, encoding: str = "UTF8") -> Iterator[str]:
+        """The URL of a database of its own; one with tables is in UTF8."""
+        assert encoding == "UTF8" or not migrated
         if migrated and not self._migrated:
             self.execute(f"CREATE DATABASE {TEMPLATE}")
             migrate(self.url(TEMPLATE))
             self._migrated = True
         name = f"test_{uuid.uuid4().hex}"
-        self.execute(f"CREATE DATABASE {name} TEMPLATE {TEMPLATE if migrated else 'template0'}")
+        template = TEMPLATE if migrated else f"template0 ENCODING '{encoding}'"
+        self.execute(f"CREATE DATABASE {name} TEMPLATE {template}")
         try:
             yield self.url(name)
         finally:

@@ -19,12 +19,16 @@ class ComposeError(RuntimeError):
 
 
 class Compose:
-    """The compose file in a project of its own, beside any that runs; the API on `port` of the host."""
+    """The compose file in a project of its own, beside any that runs; the API on `port` of the host.
 
-    def __init__(self, command: str, port: int) -> None:
-        self._command = [*shlex.split(command), "-f", str(ROOT / "docker-compose.yml"), "-p", PROJECT]
+    laid_over: further compose files, which add to it or change it.  variables: those that these ask for.
+    """
+
+    def __init__(self, command: str, port: int, laid_over: Sequence[str] = (), **variables: str) -> None:
+        files = [word for file in ("docker-compose.yml", *laid_over) for word in ("-f", str(ROOT / file))]
+        self._command = [*shlex.split(command), *files, "-p", PROJECT]
         self.port = port
-        self._environment = {**os.environ, "MCC_HOST_PORT": str(port)}
+        self._environment = {**os.environ, "MCC_HOST_PORT": str(port), **variables}
 
     def __call__(self, *arguments: str, limit_s: float = LIMIT_S) -> str:
         """Run a verb; returns what it printed. Raises ComposeError."""

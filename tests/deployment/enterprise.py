@@ -6,23 +6,18 @@ what may be wrong on a host, backs up, restores, brings an older database up to 
 """
 
 import shlex
-import signal
 import socket
-import subprocess
 import sys
 import tarfile
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import yaml
 
-from service.client.rest_client import ServiceClient, ServiceError
 from service.demo.addresses import free_ports
 from testing.service.processes import MOTOR_NAMES
-from tests.deployment.composing import BUILD_LIMIT_S, ROOT, Compose, ComposeError
+from tests.deployment.composing import ROOT, Compose
 from tests.deployment.documented import blocks
 from tests.deployment.image import health_check
 from tests.deployment.long_outage import (
@@ -30,6 +25,7 @@ from tests.deployment.long_outage import (
     an_upload_of_what_is_known_changes_nothing,
 )
 from tests.deployment.observed import START_LIMIT_S, Enterprise
+from tests.deployment.steps import build, run_steps, say
 
 SERVICES = yaml.safe_load((ROOT / "docker-compose.yml").read_text(encoding="utf-8"))["services"]
 OUTAGE_S = 20.0
@@ -59,16 +55,6 @@ except OSError as error:
     print("out of reach:", error)
 """
 
-SOURCE = """
-import hashlib, importlib.util, pathlib
-digest = hashlib.sha256()
-for package in ("core", "ied_sim", "mms", "scl", "service"):
-    directory = pathlib.Path(importlib.util.find_spec(package).origin).parent
-    for path in sorted(directory.rglob("*.py")):
-        digest.update(path.read_bytes())
-print("source", digest.hexdigest())
-"""
-
 OLDER_DATABASE = """
 from alembic import command
 from service.configuration.settings import Settings
@@ -84,16 +70,6 @@ import sqlite3
 database = sqlite3.connect("/data/statorwatch.sqlite")
 print("revision", *database.execute("SELECT version_num FROM alembic_version").fetchone())
 """
-
-
-def build(enterprise: Enterprise) -> None:
-    enterprise.compose("build", limit_s=BUILD_LIMIT_S)
-    here = subprocess.run(
-        [sys.executable, "-c", SOURCE], cwd=ROOT, capture_output=True, text=True, check=True
-    )
-    # Some tools end with 0 when a build failed, and an older image would do for all that follows.
-    there = enterprise.compose.once("mcc", "python", "-c", SOURCE)
-    assert here.stdout.strip() in there.splitlines(), f"the image is not of this source: {there}"
 
 
 def every_container_starts_without_rights(enterprise: Enterprise) -> None:
@@ -341,40 +317,10 @@ STEPS = (
 )
 
 
-def say(line: str) -> None:
-    print(line, flush=True)  # noqa: T201
-
-
-@contextmanager
-def _taken_down(compose: Compose) -> Iterator[None]:
-    """Nothing of an earlier run before the block, nothing of this one after it."""
-    compose.attempt("down", "-v")
-    try:
-        yield
-    finally:
-        compose.attempt("down", "-v")
-
-
 def main(command: str) -> int:
     """Run every step. Returns 0, or 1 after the first that failed."""
     (port,) = free_ports(1)
-    compose = Compose(command, port)
-    started_s = time.monotonic()
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit("terminated: taking everything down"))
-    with _taken_down(compose), ServiceClient(f"http://127.0.0.1:{port}") as service:
-        enterprise = Enterprise(compose, service)
-        for step in STEPS:
-            step_s = time.monotonic()
-            try:
-                step(enterprise)
-            except (AssertionError, ComposeError, ServiceError) as error:
-                say(compose.attempt("logs", "--tail", "40").stdout)
-                say(f"FAILED {step.__name__.replace('_', ' ')}: {error}")
-                return 1
-            say(f"{time.monotonic() - step_s:6.1f} s  {step.__name__.replace('_', ' ')}")
-    say(f"{time.monotonic() - started_s:6.1f} s  in all")
-    say(f"{len(STEPS)} passed, 0 failed")
-    return 0
+    return run_steps(Compose(command, port), STEPS)
 
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@ import yaml
 
 import scl
 from scl.demo_enterprise import WAN, write_demo_enterprise
+from tests.deployment import several_hosts
 from tests.deployment.composing import ROOT
 from tests.deployment.documented import blocks
 from tests.deployment.image import base_images, commands_running, instructions
@@ -21,6 +22,8 @@ def composition() -> Mapping[str, Mapping[str, Mapping[str, object]]]:
 
 
 SERVICES = composition()["services"]
+LAID_OVER = yaml.safe_load((ROOT / several_hosts.LAID_OVER).read_text(encoding="utf-8"))["services"]
+HOSTS = (*several_hosts.WORKERS, several_hosts.GATEWAY)
 
 
 def test_images_are_pinned() -> None:
@@ -110,3 +113,27 @@ def test_the_lines_for_backup_and_restore_are_found() -> None:
     assert back_up[3:] == ["tar -tf backup.tar > /dev/null && echo whole"]
     assert back_up[1].endswith("> backup.tar")
     assert restore[1].endswith("< backup.tar")
+
+
+def test_hosts_that_are_laid_over_run_the_same_image_with_as_few_rights() -> None:
+    assert set(LAID_OVER) == {"database", "mcc", *HOSTS}
+    for name in HOSTS:
+        for key in ("image", "pull_policy", "restart", "read_only", "cap_drop", "security_opt", "pids_limit"):
+            assert LAID_OVER[name][key] == SERVICES["mcc"][key], f"{name}: {key}"
+        assert not LAID_OVER[name].keys() & {"cap_add", "privileged", "user", "ports", "network_mode", "pid"}
+
+
+def test_hosts_that_are_laid_over_share_the_database_and_the_recordings_alone() -> None:
+    shared = LAID_OVER["mcc"]["environment"]
+    for name in HOSTS:
+        assert shared.items() <= LAID_OVER[name]["environment"].items()
+        assert LAID_OVER[name]["volumes"] == LAID_OVER["mcc"]["volumes"] == ["recordings:/recordings"]
+        assert "storage" in LAID_OVER[name]["networks"]
+
+
+def test_no_password_stands_in_a_compose_file() -> None:
+    asked_for = "${MCC_DATABASE_PASSWORD:?a password of your choice, for the database}"
+    assert LAID_OVER["database"]["environment"]["POSTGRES_PASSWORD"] == asked_for
+    assert LAID_OVER["mcc"]["environment"]["PGPASSWORD"] == asked_for
+    assert "@database/" in LAID_OVER["mcc"]["environment"]["MCC_DATABASE_URL"]
+    assert "ports" not in LAID_OVER["database"]

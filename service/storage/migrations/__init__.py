@@ -12,18 +12,22 @@ from service.storage.database_url import parsed_url
 from service.storage.engine import connect, one_at_a_time
 from service.storage.errors import StorageError
 
+KEEP_EVERY_TEXT = frozenset({"UTF8", "SQL_ASCII"})
+"""Encodings of a PostgreSQL server; the second one keeps the bytes that it gets."""
+
 START_ONCE = "start the service once with these settings (mcc serve), which makes the tables"
 
 
 def migrate(url: str, revision: str = "head") -> None:
     """Create the tables, or bring older ones up to date, or to an older revision that is newer than theirs.
 
-    Do nothing where they are up to date. Raises StorageError (no such URL, a newer version's database),
-    sqlalchemy.exc.SQLAlchemyError (the database does not answer).
+    Do nothing where they are up to date. Raises StorageError (no such URL, a newer version's database, one
+    that cannot hold every text), sqlalchemy.exc.SQLAlchemyError (the database does not answer).
     """
     engine = connect(url)
     try:
         with engine.begin() as connection:
+            _require_unicode(connection)
             one_at_a_time(connection, "migrate")
             settings = config(connection)
             _require_known(connection, settings)
@@ -55,6 +59,17 @@ def require_current_tables(url: str) -> None:
     if present != newest:
         found = "none" if present is None else f"those of revision {present}"
         raise StorageError(f"database_url: expected tables of revision {newest}, found {found}: {START_ONCE}")
+
+
+def _require_unicode(connection: Connection) -> None:
+    """Raise StorageError where the database would refuse a text because of a character in it."""
+    if connection.dialect.name == "postgresql":
+        encoding = connection.exec_driver_sql("SHOW server_encoding").scalar_one()
+        if encoding not in KEEP_EVERY_TEXT:
+            raise StorageError(
+                f"database_url: expected a database in UTF8, found {encoding}: make one with "
+                "createdb --encoding UTF8 --template template0"
+            )
 
 
 def _require_known(connection: Connection, settings: Config) -> None:
