@@ -33,7 +33,7 @@ def hosts_share_the_work(enterprise: Enterprise) -> None:
 
 
 def a_lost_worker_is_not_missed(enterprise: Enterprise) -> None:
-    enterprise.compose("kill", WORKERS[0])
+    enterprise.compose("stop", "-t", "0", WORKERS[0])  # SIGKILL, which not every compose command can send
     _every_motor_is_diagnosed(enterprise)
     enterprise.wait("its lease has ended", lambda: len(_runners(enterprise)) == 2, START_LIMIT_S)
     enterprise.compose("start", WORKERS[0])
@@ -41,7 +41,7 @@ def a_lost_worker_is_not_missed(enterprise: Enterprise) -> None:
 
 
 def the_relays_of_a_lost_gateway_are_taken_over(enterprise: Enterprise) -> None:
-    enterprise.compose("kill", GATEWAY)
+    enterprise.compose("stop", "-t", "0", GATEWAY)
     enterprise.wait("its lease has ended", lambda: len(_gateways(enterprise)) == 1, START_LIMIT_S)
     enterprise.wait_for_links()
     _every_motor_is_diagnosed(enterprise)
