@@ -10,6 +10,7 @@ from collections import Counter
 from service.demo.addresses import free_ports
 from testing.service.processes import MOTOR_NAMES
 from tests.deployment.composing import Compose
+from tests.deployment.enterprise import ends_where_make_demo_ends
 from tests.deployment.observed import START_LIMIT_S, Enterprise
 from tests.deployment.steps import build, run_steps
 
@@ -22,8 +23,6 @@ def every_host_starts(enterprise: Enterprise) -> None:
     enterprise.compose("up", "-d")
     enterprise.wait("the service is ready", lambda: enterprise.service.is_ready(), START_LIMIT_S)
     enterprise.log_in()
-    enterprise.wait_for_links()
-    enterprise.compose("stop", "demo")  # the only ones that trigger are these steps
 
 
 def hosts_share_the_work(enterprise: Enterprise) -> None:
@@ -86,6 +85,7 @@ def _gateways(enterprise: Enterprise) -> list[object]:
 STEPS = (
     build,
     every_host_starts,
+    ends_where_make_demo_ends,
     hosts_share_the_work,
     a_lost_worker_is_not_missed,
     the_relays_of_a_lost_gateway_are_taken_over,
