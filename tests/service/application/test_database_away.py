@@ -30,6 +30,7 @@ def ended(directory: Path, *words: str) -> "subprocess.CompletedProcess[str]":
     """Return how a command ended for which nobody listens at the database's address."""
     port = free_port()
     settings = {
+        "MCC_PORT": "0",
         "MCC_SCD": str(switched_off_plant(directory)),
         "MCC_DATABASE_URL": f"postgresql+psycopg://mcc:{PASSWORD}@127.0.0.1:{port}/mcc",
     }
