@@ -44,6 +44,27 @@ def test_a_page_is_accessible_in_every_light_and_size(looked_at: Site, route: st
 
 
 @each_page
+def test_tab_begins_at_the_first_link_and_the_current_page_is_in_sight(looked_at: Site, route: str) -> None:
+    path = path_of(looked_at, route)
+    if path is None:
+        return
+    page = looked_at.open(*EVERYBODY, screen=PHONE)
+    page.goto(path)
+    current = page.page.locator("header nav [aria-current]")
+    if current.count():
+        assert current.evaluate(IS_WITHIN_WINDOW), f"{path}: where one is cannot be seen among the pages"
+    page.page.keyboard.press("Tab")
+    first = page.page.locator("a, button, input:not([type=hidden])").first
+    assert first.evaluate("one => one === document.activeElement"), (
+        f"{path}: Tab leaves out {first.inner_text()}"
+    )
+
+
+IS_WITHIN_WINDOW = """one => { const box = one.getBoundingClientRect();
+    return box.left >= 0 && box.right <= innerWidth; }"""
+
+
+@each_page
 def test_a_page_can_be_read_without_scripts(looked_at: Site, route: str) -> None:
     path = path_of(looked_at, route)
     if path is None:

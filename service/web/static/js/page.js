@@ -111,6 +111,15 @@ document.addEventListener("formdata", ({ target, formData }) => {
 });
 
 // A plain form leads to another page: where that says it was taken, what was typed is no draft any more.
+// Of its row only: scrolling the link into view would make Tab go on from it, past the link to the content.
+function showCurrentPage() {
+  const link = document.querySelector("header nav [aria-current]");
+  const row = link?.closest("ul");
+  if (!row) return;
+  const [within, here] = [row.getBoundingClientRect(), link.getBoundingClientRect()];
+  row.scrollLeft += here.left + here.width / 2 - within.left - within.width / 2;
+}
+
 const SENT = "statorwatch sent";
 function isRefusal(notice) {
   return notice.startsWith("not-");
@@ -148,7 +157,7 @@ document.addEventListener("htmx:load", ({ detail }) => {
   nameZones(detail.elt.parentElement ?? document);
 });
 
-document.querySelector("header nav [aria-current]")?.scrollIntoView({ block: "nearest", inline: "center" });
+showCurrentPage();
 localise(document);
 restoreDrafts(document);
 nameZones(document);
