@@ -44,8 +44,8 @@ test: install
 # The same with coverage, and the campaigns; the containers where an engine answers. Long tests that have limits of time
 # do not share the cores with as many others.
 test-all: install
-	$(BIN)/python -m pytest -q -m "not campaign" --cov
-	$(BIN)/python -m pytest -q -m campaign -n 2 --cov --cov-append
+	.ci/pytest -q -m "not campaign" --cov
+	.ci/pytest -q -m campaign -n 2 --cov --cov-append
 	$(MAKE) hostile
 	$(MAKE) chaos
 	$(if $(COMPOSE),$(MAKE) compose-test,@echo "compose-test: not run, no Docker engine answers here and COMPOSE names no other compose command")
