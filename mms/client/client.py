@@ -60,9 +60,8 @@ class Client(ModelBrowser):
         request_timeout_s : float
             Longest wait for the answer to one request [s].
         on_closed : callable, optional
-            Called once when the association has ended, whoever ended it, on a thread that drives other
-            relays too: it is to be quick. A frozen relay ends nothing: only a successful read shows that it
-            works.
+            Called once when the association has ended: on a thread of its own, or on that of whoever closes
+            the client. A frozen relay ends nothing: only a successful read shows that it works.
         tls : TlsConfiguration, optional
             Our certificate and those we trust. Without it the association is not encrypted.
         password : str, optional

@@ -3,7 +3,7 @@
 import threading
 from collections.abc import Callable
 
-from mms.binding.callbacks import guarded
+from mms.binding.callbacks import guarded, inside_callback
 
 
 class ClosedNotice:
@@ -40,4 +40,8 @@ class ClosedNotice:
             self._armed = False
             self.event.set()
         if first and self._callback is not None:
-            guarded(self._callback, None)()
+            told = guarded(self._callback, None)
+            if inside_callback():  # this thread drives other relays too, and does not wait for anybody
+                threading.Thread(target=told, name="mms-closed", daemon=True).start()
+            else:
+                told()

@@ -8,8 +8,11 @@ A tick blocks its loop for 10 ms if nothing has come. So a connection is ticked 
 
 - when the answer to a request is overdue: the library ends a request in a tick, else its caller would wait
   without end;
-- 50 ms after a message that did not end the request: the library ends an association in the tick after the
-  one that found its message to be nonsense.
+- 50 ms after a message that did not end the request, and a second after one that came while nothing was
+  asked: the library ends an association in the tick after the one that found its message to be nonsense.
+
+Each turn of a loop lets every connection that has something to read have one message read. So all that has
+come is read, and who sends without end holds up no other by more than one message a turn.
 """
 
 import ctypes
@@ -30,6 +33,8 @@ _LONGEST_WAIT_S: Final = 0.25
 _DEADLINE_MARGIN_S: Final = 0.02
 """The library's clock counts milliseconds."""
 _SECOND_LOOK_S: Final = 0.05
+_IDLE_LOOK_S: Final = 1.0
+"""Relays send reports all day: looked at so seldom, each takes a hundredth of its loop at most."""
 _NEVER: Final = float("inf")
 
 
@@ -59,8 +64,13 @@ class TickedConnection:
         self._is_driven = True
         self._timeout_s: float | None = None
         self._heard_s = 0.0
-        self.due_s = _NEVER
+        self._request_due_s = _NEVER
+        self._look_s = _NEVER
+
+    @property
+    def due_s(self) -> float:
         """When the connection is ticked even if nothing has come [s, monotonic]."""
+        return min(self._request_due_s, self._look_s)
 
     @contextmanager
     def requesting(self, timeout_s: float) -> Iterator[None]:
@@ -76,17 +86,15 @@ class TickedConnection:
         None
             Nothing; the block makes the request.
         """
-        before = self._timeout_s, self.due_s
+        before = self._timeout_s, self._request_due_s
         self._heard_s = time.monotonic()
         self._timeout_s = timeout_s
-        self.due_s = self._heard_s + timeout_s + _DEADLINE_MARGIN_S
+        self._request_due_s = self._heard_s + timeout_s + _DEADLINE_MARGIN_S
         self._loop.watch(self)
         try:
             yield
         finally:
-            self._timeout_s, self.due_s = before
-            if self._timeout_s is None:
-                self._loop.unwatch(self)
+            self._timeout_s, self._request_due_s = before
 
     def tick(self, *, heard: bool) -> None:
         """Let the library read what has come, and end what is overdue; the loop's thread calls it.
@@ -98,17 +106,24 @@ class TickedConnection:
         """
         with self._ticking:
             if not self._is_driven:
+                self._request_due_s = self._look_s = _NEVER
                 return
+            timeout_s = self._timeout_s
             self._loop.lib.IedConnection_tick(self._pointer)
-            timeout_s, now_s = self._timeout_s, time.monotonic()
-            if timeout_s is None:
+            now_s = time.monotonic()
+            if not heard:
+                self._look_s = _NEVER
+            elif timeout_s is None and self._look_s == _NEVER:
+                self._look_s = now_s + _IDLE_LOOK_S
+                self._loop.watch(self)
+            if timeout_s is None or self._timeout_s is None:  # nothing was asked, or it is answered
                 return
             if heard:
                 self._heard_s = now_s
-                self.due_s = now_s + _SECOND_LOOK_S
+                self._request_due_s = now_s + _SECOND_LOOK_S
             else:
                 overdue_s = now_s + max(_SECOND_LOOK_S, timeout_s / 4)
-                self.due_s = max(self._heard_s + timeout_s + _DEADLINE_MARGIN_S, overdue_s)
+                self._request_due_s = max(self._heard_s + timeout_s + _DEADLINE_MARGIN_S, overdue_s)
 
     def stop(self) -> None:
         """Drive the connection no longer. No tick is under way afterwards; the library may be destroyed."""
@@ -133,7 +148,7 @@ class TickLoop:
         self._epoll = select.epoll()
         self._lock = threading.Lock()
         self._connections: dict[int, TickedConnection] = {}
-        self._requesting: set[TickedConnection] = set()
+        self._watched: set[TickedConnection] = set()
         threading.Thread(target=self._run, name=name, daemon=True).start()
 
     def __len__(self) -> int:
@@ -171,13 +186,13 @@ class TickLoop:
             The connection.
         """
         with self._lock:
-            self._requesting.discard(connection)
+            self._watched.discard(connection)
             if self._connections.get(connection.descriptor) is connection:
                 del self._connections[connection.descriptor]
                 self._epoll.unregister(connection.descriptor)
 
     def watch(self, connection: TickedConnection) -> None:
-        """Heed the deadline of a connection's request.
+        """Heed when a connection is due, for as long as it is at all.
 
         Parameters
         ----------
@@ -185,18 +200,7 @@ class TickLoop:
             The connection.
         """
         with self._lock:
-            self._requesting.add(connection)
-
-    def unwatch(self, connection: TickedConnection) -> None:
-        """Heed no deadline of a connection: its request has ended.
-
-        Parameters
-        ----------
-        connection : TickedConnection
-            The connection.
-        """
-        with self._lock:
-            self._requesting.discard(connection)
+            self._watched.add(connection)
 
     def _run(self) -> None:
         while True:
@@ -214,13 +218,14 @@ class TickLoop:
 
     def _wait_s(self) -> float:
         with self._lock:
-            due_s = min((each.due_s for each in self._requesting), default=_NEVER)
+            self._watched = {each for each in self._watched if each.due_s < _NEVER}
+            due_s = min((each.due_s for each in self._watched), default=_NEVER)
         return min(max(due_s - time.monotonic(), 0.0), _LONGEST_WAIT_S)
 
     def _overdue(self) -> list[TickedConnection]:
         now_s = time.monotonic()
         with self._lock:
-            return [each for each in self._requesting if each.due_s <= now_s]
+            return [each for each in self._watched if each.due_s <= now_s]
 
 
 _starting: Final = threading.Lock()

@@ -1,5 +1,6 @@
 """Connections without threads of their own: driven by loops, each by the socket that belongs to it."""
 
+import queue
 import socket
 import subprocess
 import sys
@@ -13,14 +14,17 @@ from pathlib import Path
 
 import pytest
 
-from mms import Client, ConnectionLost, FunctionalConstraint, MmsError, Server, Timeout
-from testing.ports import LOOPBACK
+from mms import Client, ConnectionLost, FunctionalConstraint, MmsError, Report, Server, Timeout
+from scl import Address
+from testing.ports import LOOPBACK, free_port
 from testing.relays.serving import RelayProcess, start_relay
+from testing.tcp_proxy import Proxy
 from testing.waiting import eventually
 
 IND01 = "T1PRO/GGIO1.Ind01.stVal"
 RELAYS = 5
 MANY = 5 * RELAYS
+TOGETHER = 100
 NONSENSE = bytes.fromhex("0300000b02f080ffffffff")
 """A whole message of the transport whose session layer is none."""
 
@@ -106,8 +110,8 @@ def test_a_frozen_relay_holds_up_no_other(relay_process: RelayProcess, hall: Hal
 
 
 @contextmanager
-def nonsense_after(port: int, client_messages: int) -> Iterator[int]:
-    """A proxy that answers one message of the client with nonsense, and then keeps silent; gives its port."""
+def nonsense_after(port: int, client_messages: int, *, asked: bool = True) -> Iterator[int]:
+    """A proxy that says nonsense and then keeps silent; gives its port. asked: only as the next answer."""
 
     def serve() -> None:
         client, _ = listener.accept()
@@ -115,7 +119,8 @@ def nonsense_after(port: int, client_messages: int) -> Iterator[int]:
             for _ in range(client_messages):
                 relay.sendall(client.recv(65_536))
                 client.sendall(relay.recv(65_536))
-            client.recv(65_536)
+            if asked:
+                client.recv(65_536)
             client.sendall(NONSENSE)
             done.wait(30)
 
@@ -141,6 +146,56 @@ def test_nonsense_ends_the_association_long_before_the_answer_is_overdue(hall: H
             is_read(client)
         assert time.monotonic() - asked_s < 5
         assert not client.is_open
+
+
+def test_nonsense_is_noticed_though_nothing_is_asked(hall: Hall) -> None:
+    with (
+        nonsense_after(hall.relays[0].port, 3, asked=False) as port,
+        Client.connect(LOOPBACK, port, request_timeout_s=30.0) as client,
+    ):
+        assert client.wait_closed(10)
+        assert not client.is_open
+
+
+def test_a_slow_callback_holds_up_no_other_relay(hall: Hall) -> None:
+    """More callbacks than loops: a loop that waited for one would answer nobody."""
+    begun, done = threading.Semaphore(0), threading.Event()
+
+    def linger() -> None:
+        begun.release()
+        done.wait(30)
+
+    with ExitStack() as stack:
+        others = [stack.enter_context(hall.connect(number)) for number in range(8)]
+        for _ in range(8):
+            ending = start_relay()
+            stack.callback(ending.stop)
+            client = Client.connect(LOOPBACK, ending.port, on_closed=linger)
+            stack.callback(client.close)
+            ending.stop()
+        assert all(begun.acquire(timeout=10) for _ in range(8))
+        assert all(map(is_read, others))
+        done.set()
+
+
+def test_messages_that_come_together_are_all_read(hall: Hall) -> None:
+    """More of them than the library would be let read in one go; others are answered in between."""
+    relay, reports = hall.relays[0], queue.SimpleQueue[Report]()
+    own, seen = Address(LOOPBACK, relay.port), Address(LOOPBACK, free_port())
+    with (
+        Proxy({"relay": (own, seen)}) as proxy,
+        hall.connect(1) as other,
+        Client.connect(LOOPBACK, seen.port) as client,
+    ):
+        client.subscribe("T1PRO/LLN0.RP.URep01", reports)
+        proxy.freeze("relay", on=True)
+        for number in range(TOGETHER):
+            relay.update_many({IND01: number % 2 == 0})
+        proxy.freeze("relay", on=False)
+        assert is_read(other)
+        came = [reports.get(timeout=10) for _ in range(TOGETHER)]
+        relay.update_many({IND01: False})
+    assert [report.sequence_number for report in came] == list(range(TOGETHER))
 
 
 CROWDED = """
