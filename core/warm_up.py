@@ -36,6 +36,8 @@ def warm_up() -> None:
     follower = Follower(motor)
     for k in range(FOLLOWED):
         follower.fold(_record(k))
+        if k == FOLLOWED // 2:  # what the records would show is told only while nothing is called
+            follower.assessment()
     follower.assessment()
     forecast([(k * NANOSECONDS_PER_DAY, 0.0) for k in range(FOLLOWED)], motor.limits.fault_level)
 
