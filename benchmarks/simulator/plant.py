@@ -39,17 +39,17 @@ def measure(relays: int = RELAYS) -> Iterator[str]:
         yield from _serve(relays, Path(directory))
 
 
-def plant_of(ports: Sequence[int], path: Path) -> None:
-    """An SCD of a relay for each port on loopback."""
+def plant_of(ports: Sequence[int], path: Path, *, first: int = 1) -> None:
+    """An SCD of a relay for each port on loopback. first: number of the first relay."""
     plant = Document(SEL710_ICD)
     _, communication, template, types = plant.root
     for element in (communication, template, types):
         plant.root.remove(element)
     network = plant.add(plant.root, "Communication")
     subnetwork = plant.add(network, "SubNetwork", name="S", type="8-MMS")
-    for k, port in enumerate(ports):
+    for number, port in enumerate(ports, first):
         relay = Document(SEL710_ICD)
-        name = f"R{k + 1:03d}"
+        name = f"R{number:03d}"
         rename_ied(relay, name)
         set_address(relay, name, Address(HOST, port))
         subnetwork.append(next(relay.descendants(relay.root, "ConnectedAP")))
