@@ -83,6 +83,8 @@ def fold_due(
             continue
         if repository.finish_fold(due, result, now_ns=time_ns(), rules=alarm_rules):
             number += len(due.observations)
+            if due.next_ns is None:  # what came meanwhile has a mark, and the next task takes it
+                break
         if monotonic() >= end_s:
             break
     return number

@@ -6,15 +6,21 @@ those who wait for it that jobs were queued, once the transaction is kept.
 
 from collections import Counter
 
-from sqlalchemy import event, func, select, update
+from sqlalchemy import bindparam, event, func, select, update
 from sqlalchemy.orm import Session, UOWTransaction
 from sqlalchemy.orm.attributes import get_history
 
-from service.storage.models import JobRow, RecordingRequestRow, RecordingRow, StateCountRow
+from service.storage.models import Base, JobRow, RecordingRequestRow, RecordingRow, StateCountRow
 from service.storage.states import JobState
 
 COUNTED = (RecordingRow, RecordingRequestRow, JobRow)
 _CHANGES = "changes of state counts"
+_COUNTS = Base.metadata.tables[StateCountRow.__tablename__]
+_COUNT = (
+    update(_COUNTS)
+    .where(_COUNTS.c.counted_table == bindparam("of_table"), _COUNTS.c.state == bindparam("of_state"))
+    .values(number=_COUNTS.c.number + bindparam("change"))
+)
 
 JOBS_QUEUED = "statorwatch_jobs_queued"
 """The channel of PostgreSQL on which it is told that jobs were queued."""
@@ -51,12 +57,12 @@ def _write_changes(session: Session) -> None:
     """
     session.flush()
     changes: Counter[tuple[str, str]] = session.info.pop(_CHANGES, Counter())
-    for (table, state), change in sorted(changes.items()):
-        if change:
-            session.execute(
-                update(StateCountRow)
-                .where(StateCountRow.counted_table == table, StateCountRow.state == state)
-                .values(number=StateCountRow.number + change)
-            )
+    counts = [
+        {"of_table": table, "of_state": state, "change": change}
+        for (table, state), change in sorted(changes.items())
+        if change
+    ]
+    if counts:
+        session.connection().execute(_COUNT, counts)
     if changes[JobRow.__tablename__, JobState.QUEUED] > 0 and session.get_bind().dialect.name == "postgresql":
         session.execute(select(func.pg_notify(JOBS_QUEUED, "")))

@@ -26,6 +26,9 @@ Row = TypeVar("Row", bound=Base)
 Item = TypeVar("Item")
 Order = Sequence[InstrumentedAttribute[str] | InstrumentedAttribute[int]]
 
+NONE_HELD: Mapping[str, Any] = {"synchronize_session": False}
+"""Options of a statement that changes rows of which the session holds no objects: none are looked for."""
+
 NAMES: Mapping[type[Base], InstrumentedAttribute[str]] = {MotorRow: MotorRow.name, IedRow: IedRow.name}
 """People type the keys of these tables, and may misspell them."""
 
@@ -77,9 +80,10 @@ def found(session: Session, row_type: type[Row], key: str, kind: str, *, lock: b
     """Return the row of this key. Raises NotFoundError.
 
     lock: other writers that ask for the same wait until this transaction has ended, and see what it did.
-    On PostgreSQL only; SQLite lets one write at a time anyway.
+    On PostgreSQL only; SQLite lets one write at a time anyway, and a row that was read is not read again.
     """
-    row = session.get(row_type, key, with_for_update={"key_share": True} if lock else None)
+    is_locked = lock and session.get_bind().dialect.name != "sqlite"
+    row = session.get(row_type, key, with_for_update={"key_share": True} if is_locked else None)
     if row is None:
         nearest = nearest_name(session, NAMES[row_type], key) if row_type in NAMES else None
         raise NotFoundError(kind, key, nearest=nearest)
@@ -89,6 +93,11 @@ def found(session: Session, row_type: type[Row], key: str, kind: str, *, lock: b
 def record_of(record_type: "type[Record]", row: Base) -> "Record":
     """Return the dataclass whose fields are columns of the row, by name."""
     return record_type(**{field.name: getattr(row, field.name) for field in fields(record_type)})
+
+
+def values_of(record: "DataclassInstance") -> dict[str, Any]:
+    """Return the fields of a record by name. What they hold is not copied, as `asdict` would."""
+    return {field.name: getattr(record, field.name) for field in fields(record)}
 
 
 def columns_of(

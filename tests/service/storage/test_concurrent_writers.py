@@ -11,8 +11,10 @@ from threading import Thread
 import pytest
 
 from service.storage import Repository, connect
+from service.storage.engine import BUSY_TIMEOUT_S
 from service.storage.records import RemoteRecord
 from service.storage.states import LinkState
+from testing.service.job_runner import RUNNER, register_runner
 from testing.service.plants import NOW_NS, two_motor_plant
 
 ROUNDS = 60
@@ -79,3 +81,17 @@ def test_a_waiting_writer_goes_on_as_soon_as_the_other_is_done(
             writer.join(30)
             delays_s.append(written_s[0] - let_go_s)
     assert statistics.median(delays_s) < 0.04, delays_s
+
+
+@ON_SQLITE
+def test_who_finds_nothing_to_do_waits_for_no_writer(database_url: str, repository: Repository) -> None:
+    """Runner and gateways look all the time; nearly always there is neither a job nor a changed rotor."""
+    repository.sync_plant(two_motor_plant())
+    register_runner(repository)
+    with closing(sqlite3.connect(database_url.removeprefix("sqlite:///"), isolation_level=None)) as other:
+        other.execute("BEGIN IMMEDIATE")
+        begun_s = time.monotonic()
+        assert repository.claim_job(now_ns=NOW_NS, runner=RUNNER) is None
+        repository.settle_rotor_alarm("PUMP-A1", now_ns=NOW_NS)
+        assert repository.relays_with_requests() == ()
+        assert time.monotonic() - begun_s < BUSY_TIMEOUT_S

@@ -15,7 +15,7 @@ from service.storage.repository.alarms.causes import clear, forget_cleared, lock
 from service.storage.repository.alarms.changes import locked
 from service.storage.repository.alarms.suppression import suppress_by_design
 from service.storage.repository.history.rotor import latest_findings
-from service.storage.repository.history.rotor_course import course_condition
+from service.storage.repository.history.rotor_course import course_condition, latest_condition
 from service.storage.repository.sessions import Sessions, found
 from service.storage.states import AlarmState
 
@@ -26,10 +26,16 @@ OF_ROTOR: Final = tuple(KINDS.values())
 class RotorAlarmRows(Sessions):
     def settle_rotor_alarm(self, motor: str, *, now_ns: int) -> None:
         """Make the alarm of a motor's rotor say what its records say. Raises NotFoundError."""
+        of_rotor = (AlarmRow.motor == motor, is_open(), AlarmRow.kind.in_(OF_ROTOR))
+        with self._read() as session:
+            found(session, MotorRow, motor, "motor")
+            is_quiet = latest_condition(session, motor) not in KINDS
+            if is_quiet and session.scalar(select(AlarmRow.id).where(*of_rotor).limit(1)) is None:
+                return
         with self._write() as session:
             place = locked_place(session, AlarmPlace(motor=motor))
             in_service = found(session, MotorRow, motor, "motor").in_service
-            rows = locked(session, AlarmRow.motor == motor, is_open(), AlarmRow.kind.in_(OF_ROTOR))
+            rows = locked(session, *of_rotor)
             condition = course_condition(session, motor)
             if in_service and condition.state in KINDS:
                 _tell(session, place, rows, condition, now_ns)

@@ -6,7 +6,7 @@ same motor at the same time, the first to end is kept, for the other began from 
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, fields
+from dataclasses import fields
 
 from sqlalchemy import bindparam, delete, func, insert, or_, select, update
 from sqlalchemy.orm import Session
@@ -43,11 +43,19 @@ from service.storage.repository.conditions.observations import OBSERVED, record_
 from service.storage.repository.conditions.standing_changes import TOLD, is_material
 from service.storage.repository.conditions.tracking import followed_starts, write_tracked_points
 from service.storage.repository.history.condition_days import keep_days
-from service.storage.repository.sessions import Sessions, found, only, record_of
+from service.storage.repository.sessions import NONE_HELD, Sessions, found, only, record_of, values_of
 from service.storage.texts import storable
 
 _OBSERVATIONS = Base.metadata.tables["observations"]
 """The table, not the class: statements for many rows at once look at no object of the session."""
+
+_FIGURES = [field.name for field in fields(ConditionFigures)]
+_SAID = (
+    update(_OBSERVATIONS)
+    .where(_OBSERVATIONS.c.recording_id == bindparam("of_recording"))
+    .values({name: bindparam(name) for name in _FIGURES})
+)
+_BUS = select(MotorRow.bus).where(MotorRow.name == bindparam("of_motor"))
 
 IDS_A_STATEMENT = 500
 """Databases limit how many values a statement may hold."""
@@ -149,6 +157,7 @@ class FoldingRows(Sessions):
             checkpoint = _checkpoint_before(session, motor, min(from_ns for _, from_ns in marks))
             done_ns = EARLIEST_NS if checkpoint is None else checkpoint.time_ns
             observations, next_ns = _observations(session, motor, done_ns, most_records)
+            has_bus = session.scalar(_BUS, {"of_motor": motor}) is not None
             return FoldInput(
                 motor=motor,
                 version=version,
@@ -158,8 +167,8 @@ class FoldingRows(Sessions):
                 observations=observations,
                 next_ns=next_ns,
                 events=_events(session, motor, done_ns, next_ns),
-                bus=_bus(session, motor),
-                neighbours=_neighbours(session, motor, observations),
+                bus=_bus(session, motor) if has_bus else (),
+                neighbours=_neighbours(session, motor, observations) if has_bus else (),
                 motor_versions=tuple(_versions(session, motor)),
                 latest_change=_latest_change(session, motor, done_ns),
                 starts=followed_starts(session, motor, done_ns, next_ns),
@@ -183,7 +192,9 @@ class FoldingRows(Sessions):
             if fold.checkpoint is None:
                 row.rules = result.rules
             for some in _in_parts(fold.marks):
-                session.execute(delete(FoldMarkRow).where(FoldMarkRow.id.in_(some)))
+                session.execute(
+                    delete(FoldMarkRow).where(FoldMarkRow.id.in_(some)), execution_options=NONE_HELD
+                )
             if fold.next_ns is not None:
                 mark(session, fold.motor, fold.next_ns)
             _write_points(session, result)
@@ -193,9 +204,9 @@ class FoldingRows(Sessions):
             _write_changes(session, fold, result.changes, done_ns)
             _write_checkpoints(session, fold.motor, result)
             if result.condition is not None:
-                figures = asdict(result.condition)
-                for name in set(figures) - {"motor", "version"}:
-                    setattr(row, name, figures[name])
+                for name, value in values_of(result.condition).items():
+                    if name not in ("motor", "version"):
+                        setattr(row, name, value)
                 motor = found(session, MotorRow, fold.motor, "motor")
                 settle_alarm(session, motor, result.condition, now_ns=now_ns, rules=rules)
                 row.parameters = result.parameters
@@ -350,16 +361,10 @@ def _write_points(session: Session, result: FoldResult) -> None:
     """Write what is said from each record on; one that was deleted meanwhile is left out."""
     if not result.points:
         return
-    names = [field.name for field in fields(ConditionFigures)]
-    statement = (
-        update(_OBSERVATIONS)
-        .where(_OBSERVATIONS.c.recording_id == bindparam("of_recording"))
-        .values({name: bindparam(name) for name in names})
-    )
     session.connection().execute(
-        statement,
+        _SAID,
         [
-            {"of_recording": point.recording_id, **{name: getattr(point, name) for name in names}}
+            {"of_recording": point.recording_id, **{name: getattr(point, name) for name in _FIGURES}}
             for point in result.points
         ],
     )
@@ -375,10 +380,10 @@ def _write_changes(
     if fold.next_ns is not None:
         ids = [change.id for change in changes]
         old = old.where(or_(ConditionChangeRow.time_ns < fold.next_ns, ConditionChangeRow.id.in_(ids)))
-    session.execute(old)
+    session.execute(old, execution_options=NONE_HELD)
     if changes:
         session.execute(
-            insert(ConditionChangeRow), [{"id": change.id, **asdict(change)} for change in changes]
+            insert(ConditionChangeRow), [{"id": change.id, **values_of(change)} for change in changes]
         )
 
 
@@ -387,10 +392,11 @@ def _write_checkpoints(session: Session, motor: str, result: FoldResult) -> None
         delete(ConditionCheckpointRow).where(
             ConditionCheckpointRow.motor == motor,
             ConditionCheckpointRow.time_ns.not_in(result.kept_checkpoints),
-        )
+        ),
+        execution_options=NONE_HELD,
     )
     if result.checkpoints:
-        rows = [{"motor": motor, **asdict(one)} for one in result.checkpoints]
+        rows = [{"motor": motor, **values_of(one)} for one in result.checkpoints]
         session.execute(insert(ConditionCheckpointRow), rows)
 
 

@@ -181,14 +181,18 @@ class ObservationRows(Sessions):
 
 
 def keep_observation(
-    session: Session, recording_id: str, motor: str, observation: Observation | None
+    session: Session,
+    recording_id: str,
+    motor: str,
+    observation: Observation | None,
+    *,
+    is_first: bool = False,
 ) -> None:
     """Keep what a recording tells instead of what it told before, if anything, and have it folded.
 
-    Raises UnstorableDiagnosisError.
+    is_first: it was never diagnosed before, so it told nothing. Raises UnstorableDiagnosisError.
     """
-    session.execute(delete(UnobservedRecordingRow).where(UnobservedRecordingRow.recording_id == recording_id))
-    before = session.get(ObservationRow, recording_id)
+    before = None if is_first else _told_before(session, recording_id)
     row = None if observation is None else observation_row(recording_id, motor, observation)
     if before is not None:
         if row is not None and _of_row(before) == _of_row(row):
@@ -201,6 +205,12 @@ def keep_observation(
         session.add(row)
         session.flush()
         mark_with_bus(session, motor, row.time_ns)
+
+
+def _told_before(session: Session, recording_id: str) -> ObservationRow | None:
+    """Return what a recording told before, which from now on need not be found out."""
+    session.execute(delete(UnobservedRecordingRow).where(UnobservedRecordingRow.recording_id == recording_id))
+    return session.get(ObservationRow, recording_id)
 
 
 def take_in_again(session: Session, row: ObservationRow) -> None:

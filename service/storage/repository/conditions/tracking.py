@@ -27,6 +27,11 @@ _OBSERVATIONS: Final = Base.metadata.tables["observations"]
 _NAMES: Final = [field.name for field in fields(TrackedPoint)]
 _FIGURES: Final = [name for name in _NAMES if name not in ("recording_id", "time_ns")]
 _ORDER: Final[Order] = (ObservationRow.time_ns, ObservationRow.recording_id)
+_FOLLOWED: Final = (
+    update(_OBSERVATIONS)
+    .where(_OBSERVATIONS.c.recording_id == bindparam("of_recording"))
+    .values({name: bindparam(name) for name in _FIGURES})
+)
 
 
 class TrackingRows(Sessions):
@@ -98,13 +103,8 @@ def write_tracked_points(session: Session, points: Sequence[TrackedPoint]) -> No
     """Write changes of parameters after each record; one that was deleted meanwhile is left out."""
     if not points:
         return
-    statement = (
-        update(_OBSERVATIONS)
-        .where(_OBSERVATIONS.c.recording_id == bindparam("of_recording"))
-        .values({name: bindparam(name) for name in _FIGURES})
-    )
     session.connection().execute(
-        statement,
+        _FOLLOWED,
         [
             {"of_recording": point.recording_id, **{name: getattr(point, name) for name in _FIGURES}}
             for point in points

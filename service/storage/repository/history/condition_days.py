@@ -9,7 +9,7 @@ from sqlalchemy.orm import InstrumentedAttribute, Session
 from core.units import NANOSECONDS_PER_DAY
 from service.storage.models import ConditionDayRow, ObservationRow
 from service.storage.records import ConditionDay
-from service.storage.repository.sessions import Sessions, columns_of
+from service.storage.repository.sessions import NONE_HELD, Sessions, columns_of
 
 
 class ConditionDayRows(Sessions):
@@ -62,7 +62,7 @@ def keep_days(session: Session, motor: str, *, after_ns: int | None, before_ns: 
         .group_by(ObservationRow.motor, day_ns)
     )
     columns = ["motor", "day_ns", "records", "mu_f_least", "mu_f_mean", "mu_f_largest"]
-    session.execute(delete(ConditionDayRow).where(*of_days))
+    session.execute(delete(ConditionDayRow).where(*of_days), execution_options=NONE_HELD)
     session.execute(insert(ConditionDayRow).from_select(columns, days))
 
 

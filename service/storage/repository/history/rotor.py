@@ -68,9 +68,23 @@ def latest_findings(session: Session, motor: str, limit: int) -> tuple[RotorEntr
 
 
 def keep_rotor_finding(
-    session: Session, recording_id: str, motor: str, time_ns: int, finding: RotorFinding | None
+    session: Session,
+    recording_id: str,
+    motor: str,
+    time_ns: int,
+    finding: RotorFinding | None,
+    *,
+    is_first: bool = False,
 ) -> None:
-    """Keep what a recording shows of the rotor, in place of what an earlier diagnosis found."""
+    """Keep what a recording shows of the rotor, in place of what an earlier diagnosis found.
+
+    is_first: there was no earlier diagnosis.
+    """
+    counted = not is_first and session.get(RotorFindingRow, recording_id) is not None
+    if not counted and (finding is None or finding.state not in TOLD_STATES):
+        if finding is not None:  # nothing follows from one that cannot tell
+            _put_in(session, recording_id, motor, time_ns, finding)
+        return
     with judged_again(session, motor) as places:
         places += _taken_out(session, recording_id)
         if finding is not None:

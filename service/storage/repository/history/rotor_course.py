@@ -12,7 +12,18 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, Final, NamedTuple
 
-from sqlalchemy import Select, bindparam, func, select, tuple_, union_all, update
+from sqlalchemy import (
+    BigInteger,
+    ColumnElement,
+    Select,
+    String,
+    bindparam,
+    func,
+    select,
+    tuple_,
+    union_all,
+    update,
+)
 from sqlalchemy.orm import Session
 
 from core.rotor.finding import LOAD_BINS, LOAD_OSCILLATION, RotorState
@@ -41,6 +52,67 @@ _FIGURES: Final = (
 _ROWS_AT_ONCE: Final = 1000
 TOLD_STATES: Final = tuple(state for state in RotorState if state is not RotorState.UNSUPPORTED)
 """Of findings that count, and of the condition from them on."""
+_BEFORE_ALL: Final = (-(2**63), "")
+"""Comes before every key."""
+
+
+def _course(*columns: Any) -> Select[*tuple[Any, ...]]:
+    return select(*columns).where(
+        RotorFindingRow.motor == bindparam("of_motor"), RotorFindingRow.condition.is_not(None)
+    )
+
+
+def _place(name: str) -> ColumnElement[Any]:
+    return tuple_(bindparam(f"{name}_ns", type_=BigInteger), bindparam(f"{name}_id", type_=String))
+
+
+# To put a statement together takes longer than to carry it out: they are made once, for any motor.
+_LATEST: Final = (
+    _course(*_KEY, *_FIGURES, RotorFindingRow.reasons).order_by(*_LATEST_FIRST).limit(LATEST_RECORDS)
+)
+_LATEST_CONDITION: Final = _course(RotorFindingRow.condition).order_by(*_LATEST_FIRST).limit(1)
+_OF_BINS: Final = _course(RotorFindingRow.load_bin, func.count()).group_by(RotorFindingRow.load_bin)
+_FIRST_OF_BINS: Final = union_all(
+    *(
+        select(
+            _course(RotorFindingRow.load_bin, RotorFindingRow.recording_id, RotorFindingRow.severity_dB)
+            .where(RotorFindingRow.load_bin == load_bin)
+            .order_by(*_KEY)
+            .limit(BASELINE_RECORDS)
+            .subquery()
+        )
+        for load_bin in range(LOAD_BINS)
+    )
+)
+_BEFORE_PLACE: Final = (
+    _course(RotorFindingRow.recording_id, *_FIGURES)
+    .where(tuple_(*_KEY) < _place("at"))
+    .order_by(*_LATEST_FIRST)
+    .limit(LATEST_RECORDS - 1)
+)
+_FROM_PLACE: Final = (
+    _course(RotorFindingRow.recording_id, *_FIGURES)
+    .where(tuple_(*_KEY) >= _place("at"))
+    .order_by(*_KEY)
+    .limit(LATEST_RECORDS)
+)
+_LAST_IN_STATE: Final = (
+    _course(*_KEY).where(RotorFindingRow.condition == bindparam("state")).order_by(*_LATEST_FIRST).limit(1)
+)
+_FIRST_IN_STATE: Final = (
+    _course(RotorFindingRow.time_ns)
+    .where(
+        RotorFindingRow.condition == bindparam("state"),
+        *(tuple_(*_KEY) > _place(f"after_{other}") for other in range(len(TOLD_STATES) - 1)),
+    )
+    .order_by(*_KEY)
+    .limit(1)
+)
+_JUDGED: Final = (
+    update(_FINDINGS)
+    .where(_FINDINGS.c.recording_id == bindparam("of_recording"))
+    .values(condition=bindparam("judged"))
+)
 
 
 class Place(NamedTuple):
@@ -61,21 +133,22 @@ class _Baseline:
 def course_condition(session: Session, motor: str) -> RotorCondition:
     """Return what all records of a motor say of its rotor together."""
     baselines = _baselines(session, motor)
-    latest = session.execute(
-        _course(motor, *_KEY, *_FIGURES, RotorFindingRow.reasons)
-        .order_by(*_LATEST_FIRST)
-        .limit(LATEST_RECORDS)
-    ).all()
+    latest = session.execute(_LATEST, {"of_motor": motor}).all()
     judged = [
         _judged(baselines, recording_id, *figures, reasons=reasons)
         for _, recording_id, *figures, reasons in reversed(latest)
     ]
-    of_bins = _course(motor, RotorFindingRow.load_bin, func.count()).group_by(RotorFindingRow.load_bin)
     bins = [
         LoadBin(load_bin, records, baselines[load_bin].level_dB)
-        for load_bin, records in sorted(session.execute(of_bins).all())
+        for load_bin, records in sorted(session.execute(_OF_BINS, {"of_motor": motor}).all())
     ]
     return rotor_condition(judged, _since_ns(session, motor, state_after(judged)), bins)
+
+
+def latest_condition(session: Session, motor: str) -> RotorState | None:
+    """Return the condition of a motor's rotor from its latest record on; None where none tells of it."""
+    found: RotorState | None = session.scalar(_LATEST_CONDITION, {"of_motor": motor})
+    return found
 
 
 @contextmanager
@@ -95,12 +168,9 @@ def judged_again(session: Session, motor: str) -> Iterator[list[Place]]:
 
 def _judge_from(session: Session, motor: str, place: Place, baselines: dict[int, _Baseline]) -> None:
     """Judge the records at a place and after it that it tells upon."""
-    rows = _course(motor, RotorFindingRow.recording_id, *_FIGURES)
-    position, key = tuple_(*_KEY), tuple_(*place)
-    before = session.execute(
-        rows.where(position < key).order_by(*_LATEST_FIRST).limit(LATEST_RECORDS - 1)
-    ).all()
-    behind = session.execute(rows.where(position >= key).order_by(*_KEY).limit(LATEST_RECORDS)).all()
+    at = {"of_motor": motor, "at_ns": place.time_ns, "at_id": place.recording_id}
+    before = session.execute(_BEFORE_PLACE, at).all()
+    behind = session.execute(_FROM_PLACE, at).all()
     judged = [_judged(baselines, *row) for row in (*reversed(before), *behind)]
     conditions = {
         row.recording_id: state_after(judged[max(0, end - LATEST_RECORDS) : end])
@@ -110,10 +180,10 @@ def _judge_from(session: Session, motor: str, place: Place, baselines: dict[int,
 
 
 def _judge_all(session: Session, motor: str, baselines: dict[int, _Baseline]) -> None:
-    query = _course(motor, RotorFindingRow.recording_id, RotorFindingRow.condition, *_FIGURES)
+    query = _course(RotorFindingRow.recording_id, RotorFindingRow.condition, *_FIGURES)
     latest: deque[JudgedRecord] = deque(maxlen=LATEST_RECORDS)
     changed = {}
-    for recording_id, condition, *figures in session.execute(query.order_by(*_KEY)):
+    for recording_id, condition, *figures in session.execute(query.order_by(*_KEY), {"of_motor": motor}):
         latest.append(_judged(baselines, recording_id, *figures))
         state = state_after(latest)
         if state is not condition:
@@ -122,29 +192,14 @@ def _judge_all(session: Session, motor: str, baselines: dict[int, _Baseline]) ->
 
 
 def _write(session: Session, conditions: dict[str, RotorState]) -> None:
-    statement = (
-        update(_FINDINGS)
-        .where(_FINDINGS.c.recording_id == bindparam("of_recording"))
-        .values(condition=bindparam("judged"))
-    )
     values = [{"of_recording": one, "judged": state} for one, state in conditions.items()]
     for first in range(0, len(values), _ROWS_AT_ONCE):
-        session.connection().execute(statement, values[first : first + _ROWS_AT_ONCE])
+        session.connection().execute(_JUDGED, values[first : first + _ROWS_AT_ONCE])
 
 
 def _baselines(session: Session, motor: str) -> dict[int, _Baseline]:
-    first_of_bins = [
-        _course(motor, RotorFindingRow.load_bin, RotorFindingRow.recording_id, RotorFindingRow.severity_dB)
-        .where(RotorFindingRow.load_bin == load_bin)
-        .order_by(*_KEY)
-        .limit(BASELINE_RECORDS)
-        .subquery()
-        for load_bin in range(LOAD_BINS)
-    ]
     first: dict[int, dict[str, float]] = {load_bin: {} for load_bin in range(LOAD_BINS)}
-    for load_bin, recording_id, severity_dB in session.execute(
-        union_all(*(select(one) for one in first_of_bins))
-    ):
+    for load_bin, recording_id, severity_dB in session.execute(_FIRST_OF_BINS, {"of_motor": motor}):
         first[load_bin][recording_id] = severity_dB
     return {
         load_bin: _Baseline(baseline_dB(list(own.values())), frozenset(own))
@@ -154,21 +209,14 @@ def _baselines(session: Session, motor: str) -> dict[int, _Baseline]:
 
 def _since_ns(session: Session, motor: str, state: RotorState) -> int | None:
     """Return the time of the first record after the last one with another condition."""
-    first = _course(motor, RotorFindingRow.time_ns).where(RotorFindingRow.condition == state)
-    for other in TOLD_STATES:
-        if other is state:
-            continue
-        last = session.execute(
-            _course(motor, *_KEY).where(RotorFindingRow.condition == other).order_by(*_LATEST_FIRST).limit(1)
-        ).first()
-        if last is not None:
-            first = first.where(tuple_(*_KEY) > tuple_(*last))
-    found: int | None = session.scalar(first.order_by(*_KEY).limit(1))
+    if state not in TOLD_STATES:  # no record counts
+        return None
+    after: dict[str, int | str] = {}
+    for number, other in enumerate(one for one in TOLD_STATES if one is not state):
+        last = session.execute(_LAST_IN_STATE, {"of_motor": motor, "state": other}).first()
+        after[f"after_{number}_ns"], after[f"after_{number}_id"] = _BEFORE_ALL if last is None else last
+    found: int | None = session.scalar(_FIRST_IN_STATE, {"of_motor": motor, "state": state, **after})
     return found
-
-
-def _course(motor: str, *columns: Any) -> Select[*tuple[Any, ...]]:
-    return select(*columns).where(RotorFindingRow.motor == motor, RotorFindingRow.condition.is_not(None))
 
 
 def _judged(

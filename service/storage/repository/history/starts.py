@@ -94,10 +94,20 @@ class StartRows(Sessions):
 
 
 def keep_start(
-    session: Session, recording_id: str, motor: str, time_ns: int, start: ExaminedStart | None
+    session: Session,
+    recording_id: str,
+    motor: str,
+    time_ns: int,
+    start: ExaminedStart | None,
+    *,
+    is_first: bool = False,
 ) -> None:
-    """Keep what a recording shows of a start, in place of what an earlier diagnosis found; None for none."""
-    forget_start(session, recording_id)
+    """Keep what a recording shows of a start, in place of what an earlier diagnosis found; None for none.
+
+    is_first: there was no earlier diagnosis.
+    """
+    if not is_first:
+        forget_start(session, recording_id)
     if start is None or not _is_finite(start.figures):
         return
     if followed_start(time_ns, start.parameters) is not None:

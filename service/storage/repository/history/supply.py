@@ -43,10 +43,20 @@ class SupplyRows(Sessions):
 
 
 def keep_supply(
-    session: Session, recording_id: str, motor: str, time_ns: int, figures: SupplyFigures | None
+    session: Session,
+    recording_id: str,
+    motor: str,
+    time_ns: int,
+    figures: SupplyFigures | None,
+    *,
+    is_first: bool = False,
 ) -> None:
-    """Keep what a recording shows of the supply, in place of what an earlier diagnosis found."""
-    forget_supply(session, recording_id)
+    """Keep what a recording shows of the supply, in place of what an earlier diagnosis found.
+
+    is_first: there was no earlier diagnosis.
+    """
+    if not is_first:
+        forget_supply(session, recording_id)
     if figures is None:
         return
     values = {field.name: getattr(figures, field.name) for field in fields(figures)}

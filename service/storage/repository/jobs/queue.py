@@ -4,7 +4,7 @@ import json
 import uuid
 from collections.abc import Mapping, Sequence
 
-from sqlalchemy import Select, func, or_, select, update
+from sqlalchemy import Select, bindparam, func, literal_column, or_, select, update
 from sqlalchemy.orm import joinedload
 
 from core.classification.classification import Classification
@@ -22,7 +22,14 @@ from service.storage.errors import (
     StateConflictError,
     UnstorableDiagnosisError,
 )
-from service.storage.models import DiagnosisRow, JobRow, JobRunnerRow, RecordingRequestRow, RecordingRow
+from service.storage.models import (
+    Base,
+    DiagnosisRow,
+    JobRow,
+    JobRunnerRow,
+    RecordingRequestRow,
+    RecordingRow,
+)
 from service.storage.records import ClaimedJob, Cursor, DiagnosisEntry, Job, JobResult, Page, RecordLength
 from service.storage.records.actors import SERVICE, Actor
 from service.storage.repository.audit.entries import note_change
@@ -47,6 +54,15 @@ MOST_DOCUMENT_BYTES = 256 * 1024
 
 LATEST_NS = 2**63 - 1
 """Times are integers of 64 bits in the database."""
+
+
+# The state as a literal: SQLite takes the index of the queued jobs for no parameter.
+_IS_QUEUED = select(JobRow.id).where(JobRow.state == literal_column(f"'{JobState.QUEUED}'")).limit(1)
+
+_DIAGNOSES = Base.metadata.tables[DiagnosisRow.__tablename__]
+_NOT_CURRENT = (
+    update(_DIAGNOSES).where(_DIAGNOSES.c.recording_id == bindparam("of_recording")).values(current=False)
+)
 
 
 class JobRows(Sessions):
@@ -90,8 +106,11 @@ class JobRows(Sessions):
         """Take the next job that is due, by priority: it is running from now on, one attempt more.
 
         One that was queued later than now is of a time before the clock was set back: it is due.
-        runner: a registered runner, whose job it is from now on. Raises RunnerEndedError.
+        runner: a registered runner, whose job it is from now on. Raises RunnerEndedError where a job waits.
         """
+        with self._read() as session:  # nearly always there is none: nobody who writes waits for that look
+            if session.scalar(_IS_QUEUED) is None:
+                return None
         queued_ns = func.coalesce(JobRow.finished_ns, JobRow.created_ns)
         is_due = or_(JobRow.not_before_ns <= now_ns, queued_ns > now_ns)
         query = (
@@ -178,9 +197,8 @@ class JobRows(Sessions):
                 return False
             recording = found(session, RecordingRow, row.recording_id, "recording", lock=True)
             document = _document(diagnosis, rotor, supply, classification)
-            session.execute(
-                update(DiagnosisRow).where(DiagnosisRow.recording_id == recording.id).values(current=False)
-            )
+            earlier = session.connection().execute(_NOT_CURRENT, {"of_recording": recording.id})
+            is_first = earlier.rowcount == 0  # nothing is kept of the recording that this one replaces
             session.add(_diagnosis_row(row, recording.motor, diagnosis, document, recorded_ns, now_ns))
             end_job(row, JobState.DONE, None, now_ns)
             recording.state = RecordingState.DIAGNOSED
@@ -193,13 +211,13 @@ class JobRows(Sessions):
             withdraw_clock(recording)
             session.flush()
             diagnose_rows(session, recording.id, now_ns)
-            keep_observation(session, recording.id, recording.motor, observation)
-            keep_start(session, recording.id, recording.motor, recorded_ns, start)
+            keep_observation(session, recording.id, recording.motor, observation, is_first=is_first)
+            keep_start(session, recording.id, recording.motor, recorded_ns, start, is_first=is_first)
             shown = (session, recording.id, recording.motor, recorded_ns)
             counts = left_out is None
             tells_of_rotor = counts and diagnosis.verdict is not Verdict.UNDIAGNOSABLE
-            keep_rotor_finding(*shown, rotor if tells_of_rotor else None)
-            keep_supply(*shown, supply if counts else None)
+            keep_rotor_finding(*shown, rotor if tells_of_rotor else None, is_first=is_first)
+            keep_supply(*shown, supply if counts else None, is_first=is_first)
             if diagnosis.operation in AT_REST:
                 note_standstill(session, recording.motor, min(recorded_ns, now_ns))
             return True

@@ -3,7 +3,7 @@
 import uuid
 from dataclasses import dataclass
 
-from sqlalchemy import ColumnElement, delete, func, literal_column, select
+from sqlalchemy import ColumnElement, bindparam, delete, func, literal_column, select
 from sqlalchemy.orm import Session
 
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
@@ -37,6 +37,13 @@ from service.storage.repository.sessions import (
     record_of,
 )
 from service.storage.states import JobPriority, JobState, RecordingSource, RecordingState
+
+# Nearly every record is new: one look says so.
+_HAS_CONTENT = (
+    select(RecordingFileRow.recording_id)
+    .where(RecordingFileRow.sha256.in_(bindparam("contents", expanding=True)))
+    .limit(1)
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,6 +184,8 @@ def new_job(row: RecordingRow, method: str, model: str, priority: JobPriority, n
 def stored_before(
     session: Session, motor: str, relay: str | None, name: str, stored: StoredRecording
 ) -> RecordingRow | None:
+    if session.scalar(_HAS_CONTENT, {"contents": [file.sha256 for file in stored.waveform_files]}) is None:
+        return None
     if relay is None:
         return _of_the_same_waveform(session, motor, stored)
     same_name = (RecordingRow.ied == relay, RecordingRow.name == name)

@@ -6,12 +6,12 @@ file that a relay writes.
 
 import uuid
 
-from sqlalchemy import exists, select
+from sqlalchemy import Exists, exists, select
 from sqlalchemy.orm import Session
 
 from service.audit.actions import AuditAction
 from service.storage.errors import OutOfServiceError, StateConflictError, TooManyWaitingError
-from service.storage.models import IedRow, LeaseRow, MotorRow, RecordingRequestRow
+from service.storage.models import IedRow, LeaseRow, MotorRow, RecordingRequestRow, StateCountRow
 from service.storage.records import Cursor, Page, RecordingRequest
 from service.storage.records.actors import SERVICE, Actor
 from service.storage.repository.audit.entries import note_change
@@ -39,6 +39,24 @@ ENDED = (
 
 KIND = "event report"
 """Error messages call a recording request by this name."""
+
+# Every gateway looks a few times a second: nearly always the count that is kept says that there is nothing.
+_REQUESTED = select(StateCountRow.number).where(
+    StateCountRow.counted_table == RecordingRequestRow.__tablename__,
+    StateCountRow.state == RecordingRequestState.REQUESTED,
+)
+
+
+def _has_requests(*states: RecordingRequestState) -> Exists:
+    """Take one look into the index: what was asked for in all those years does not matter."""
+    return exists().where(RecordingRequestRow.ied == IedRow.name, RecordingRequestRow.state.in_(states))
+
+
+_TO_BE_TRIGGERED = (
+    select(IedRow.name)
+    .where(_has_requests(RecordingRequestState.REQUESTED), ~_has_requests(*IN_THE_RELAY))
+    .order_by(IedRow.name)
+)
 
 
 class RecordingRequestRows(Sessions):
@@ -148,14 +166,10 @@ class RecordingRequestRows(Sessions):
 
     def relays_with_requests(self) -> tuple[str, ...]:
         """Return the relays to be triggered now: none that still owes the record of an earlier trigger."""
-        # Two looks into the index a relay: what was asked for in all those years does not matter.
-        waiting, outstanding = (
-            exists().where(RecordingRequestRow.ied == IedRow.name, RecordingRequestRow.state.in_(states))
-            for states in ((RecordingRequestState.REQUESTED,), IN_THE_RELAY)
-        )
-        query = select(IedRow.name).where(waiting, ~outstanding).order_by(IedRow.name)
         with self._read() as session:
-            return tuple(session.scalars(query))
+            if not session.scalar(_REQUESTED):
+                return ()
+            return tuple(session.scalars(_TO_BE_TRIGGERED))
 
     def open_recording_requests(self, relay: str) -> tuple[RecordingRequest, ...]:
         """Return the requests to a relay that have no recording yet, oldest first.

@@ -22,6 +22,8 @@ from service.storage.states import LinkState
 
 GATEWAY_GONE = "the gateway that visited this relay ended; another takes over"
 
+_LEASES = select(LeaseRow.ied, LeaseRow.gateway)
+
 
 @dataclass(frozen=True, slots=True)
 class Share:
@@ -59,7 +61,7 @@ class LeaseRows(Sessions):
             rows = session.scalars(select(GatewayRow)).all()
             in_service = set(session.scalars(select(IedRow.name).where(IedRow.in_service)))
             wanted = sorted(in_service.intersection(relays))
-            leases = {row.ied: row.gateway for row in session.scalars(select(LeaseRow))}
+            leases = dict(session.execute(_LEASES).all())  # no objects: there may be a thousand
             held = {relay for relay, holder in leases.items() if holder == gateway}
             fair = min(most, -(-len(wanted) // len(rows)))
             free = [relay for relay in wanted if relay not in leases]
