@@ -127,8 +127,6 @@ class _Path:
             result = fold(due, of_motor.motor)
         with costs.of("worker: keep the fold"):
             repository.finish_fold(due, result, now_ns=now_ns)
-        with costs.of("worker: is more to be folded?"):
-            repository.begin_fold(motor, 2000)
 
 
 def main() -> None:
