@@ -9,6 +9,7 @@ from core.units import NANOSECONDS_PER_MILLISECOND, NANOSECONDS_PER_SECOND
 
 _DATE = re.compile(r"(\d{1,4})[/-](\d{1,2})[/-](\d{1,4})", re.ASCII)
 _TIME = re.compile(r"(\d{1,2}):(\d\d):(\d\d)(?:\.(\d{1,6}))?", re.ASCII)
+_CLOCK = re.compile(r".*\bDate:\s*(\S+)\s+Time:\s*(\S+)", re.IGNORECASE)
 _CENTURY = 2000
 _YEARS = range(1970, 2200)
 """No relay kept a report before; later ones are no times in nanoseconds."""
@@ -57,6 +58,31 @@ def time_of(line: Line, date: str, time_of_day: str, order: DateOrder) -> int:
         _time(line, (year, given["M"], given["D"]), (int(clock[1]), int(clock[2]), int(clock[3])))
         + nanoseconds
     )
+
+
+def clock_in(line: Line, order: DateOrder) -> int | None:
+    """Return the relay's clock where a line of a heading has it.
+
+    Parameters
+    ----------
+    line : Line
+        The line.
+    order : DateOrder
+        Order of the date.
+
+    Returns
+    -------
+    int or None
+        When the report was made, by the relay's clock, as if this were in UTC [ns]; None where the line has
+        no clock.
+
+    Raises
+    ------
+    ReportError
+        If what stands in the clock's place is no date and time.
+    """
+    found = _CLOCK.fullmatch(line.text)
+    return None if found is None else time_of(line, found[1], found[2], order)
 
 
 def time_of_fields(line: Line, fields: dict[str, str]) -> int:

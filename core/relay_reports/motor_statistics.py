@@ -5,14 +5,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from core.relay_reports.clock_times import DateOrder, time_of
+from core.relay_reports.clock_times import DateOrder, clock_in, time_of
 from core.relay_reports.error import ReportError
 from core.relay_reports.report_text import Line, report_text
 
 _ENTRY = re.compile(r"(\S.*?)(?:\s{2,}|\s*:\s+)(\S.*)")
 _HOURS = re.compile(r"(\d{1,7}):([0-5]\d):([0-5]\d)(?:\s*\(h:mm:ss\))?", re.ASCII)
 _TRIPS = "trips, "
-_CLOCK = re.compile(r".*\bDate:\s*(\S+)\s+Time:\s*(\S+)", re.IGNORECASE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,9 +77,9 @@ def read_motor_statistics(
     entries: dict[str, tuple[Line, str]] = {}
     time_ns = None
     for line in report_text(report, name).lines():
-        clock = _CLOCK.fullmatch(line.text)
-        if clock is not None and time_ns is None:
-            time_ns = time_of(line, clock[1], clock[2], date_order)
+        clock_ns = clock_in(line, date_order) if time_ns is None else None
+        if clock_ns is not None:
+            time_ns = clock_ns
             continue
         entry = _ENTRY.fullmatch(line.text)
         if entry is None:

@@ -57,32 +57,40 @@ def read_sequence_of_events(
         If the file cannot be read.
     """
     text = report_text(report, name)
-    changes = _compressed(text) if text.is_compressed else _plain(text, date_order)
-    # A report has the newest first, and those of one moment in that order, too.
-    changes.reverse()
-    changes.sort(key=lambda change: change.time_ns)
-    return tuple(changes)
+    rows = _compressed(text) if text.is_compressed else _plain(text, date_order)
+    # Relays show the newest first or last; either way the newest is number 1.
+    rows.sort(key=lambda row: (row.change.time_ns, -row.number))
+    return tuple(row.change for row in rows)
 
 
-def _plain(report: ReportText, order: DateOrder) -> list[StateChange]:
-    changes = []
+@dataclass(frozen=True, slots=True)
+class _Row:
+    number: int
+    change: StateChange
+
+
+def _plain(report: ReportText, order: DateOrder) -> list[_Row]:
+    rows = []
     for line, fields in plain_table(report, "DATE", "TIME", "ELEMENT", "STATE").rows:
         if len(fields) < _FEWEST_FIELDS or not fields[0].isdecimal():
             raise line.error("", expected="number, date, time, element and state", found=line.text)
         time_ns = time_of(line, fields[1], fields[2], order)
-        changes.append(_change(time_ns, " ".join(fields[3:-1]), fields[-1]))
-    return changes
+        rows.append(_Row(int(fields[0]), _change(time_ns, " ".join(fields[3:-1]), fields[-1])))
+    return rows
 
 
-def _compressed(report: ReportText) -> list[StateChange]:
+def _compressed(report: ReportText) -> list[_Row]:
     table = compressed_table(report)
-    changes = []
-    for line, fields in table.rows:
+    rows = []
+    for place, (line, fields) in enumerate(table.rows, start=1):
         by_label = dict(zip(table.labels, fields, strict=True))
         if "ELEMENT" not in by_label or "STATE" not in by_label:
             raise line.error("", expected="the columns ELEMENT and STATE", found=",".join(table.labels))
-        changes.append(_change(time_of_fields(line, by_label), by_label["ELEMENT"], by_label["STATE"]))
-    return changes
+        given = by_label.get("REC_NUM", "")
+        number = int(given) if given.isascii() and given.isdecimal() else place
+        change = _change(time_of_fields(line, by_label), by_label["ELEMENT"], by_label["STATE"])
+        rows.append(_Row(number, change))
+    return rows
 
 
 def _change(time_ns: int, element: str, state: str) -> StateChange:

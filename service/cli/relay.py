@@ -18,6 +18,7 @@ _USED = (
     ("records_told_by", "records told by"),
     ("report_control", "report control"),
     ("events_directory", "events directory"),
+    ("text_reports", "text reports"),
 )
 NOT_VISITED = "not visited yet"
 NONE = "none"
@@ -36,12 +37,16 @@ def show_relay(url: str, relay: str, *, as_json: bool) -> None:
     results().print(table)
 
 
+def _value(value: object) -> str:
+    return ", ".join(map(str, value)) if isinstance(value, list) and value else str(value or NONE)
+
+
 def _lines(ied: Document) -> list[tuple[str, str]]:
     reason = f": {ied['link_reason']}" if ied["link_reason"] else ""
     lines = [("link", f"{ied['link_state']}{reason}")]
     used = ied["acquisition"]
     if isinstance(used, Mapping):
-        lines.extend((words, str(used[key] or NONE)) for key, words in _USED)
+        lines.extend((words, _value(used.get(key))) for key, words in _USED)
         lines.extend(("decided by the motors file", str(name)) for name in used["overridden"])
         lines.extend(("remark", str(remark)) for remark in used["remarks"])
     else:

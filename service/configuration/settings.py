@@ -105,6 +105,7 @@ class Settings(BaseSettings):
     quarantine_s: float = Field(default=60.0, ge=0.1, le=SECONDS_PER_DAY)
     long_record_days: float = Field(default=0.0, ge=0, le=365)
     long_record_s: float = Field(default=10.0, ge=1, le=30)
+    text_report_period_s: float = Field(default=900.0, ge=0, le=SECONDS_PER_DAY)
     metering_period_s: float = Field(default=10.0, ge=0, le=SECONDS_PER_DAY)
     metering_sample_days: float = Field(default=1.0, ge=0.01, le=MOST_DAYS)
     metering_minute_days: float = Field(default=31.0, ge=0.01, le=MOST_DAYS)

@@ -19,5 +19,7 @@ class Play:
 STEADY = Play(SCENARIO, MOTORS)
 """Motors that stay as they are, some of them faulty."""
 
-MONTH_OF_CHANGES = Play(MONTH, MONTH_MOTORS, {"MCC_STALE_AFTER_DAYS": "60"})
-"""A month in which a fault and a sensor develop. Its records are up to a month old, and are not stale."""
+MONTH_OF_CHANGES = Play(MONTH, MONTH_MOTORS, {"MCC_STALE_AFTER_DAYS": "60", "MCC_TEXT_REPORT_PERIOD_S": "0"})
+"""A month in which a fault and a sensor develop. Its records are up to a month old, and are not stale.
+
+Text reports are not fetched: their clocks leap."""

@@ -8,7 +8,7 @@ from service.plant.metering import Measurand
 from service.plant.model import Bus, Plant, PlantMotor, Relay, Site
 from service.plant.offer import Offer, ReportBlock
 from service.plant.overrides import Overrides, TriggerAction
-from service.plant.quantities import AveragingStep, MeteredQuantity
+from service.plant.quantities import AveragingStep, MeteredQuantity, PowerUnit
 from service.plant.schedule import Schedule
 
 __all__ = [
@@ -23,6 +23,7 @@ __all__ = [
     "Plant",
     "PlantError",
     "PlantMotor",
+    "PowerUnit",
     "Relay",
     "ReportBlock",
     "Schedule",

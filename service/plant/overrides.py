@@ -1,10 +1,13 @@
 """The table [motor.relay] of the motors file, which overrides what is recognised in a relay."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from enum import StrEnum
+from typing import TypeVar
 
 from core.error_words import nearest
+from core.relay_reports.clock_times import DateOrder
+from service.plant.quantities import PowerUnit
 
 NONE = "none"
 """This word in place of a reference means: use none, whatever the relay offers."""
@@ -13,7 +16,12 @@ _REFERENCES = {
     "trigger": 'a control such as "A1_SEL710CON/RBGGIO1.SPCSO01", or "none"',
     "report_control": 'a report control block such as "A1_SEL710CFG/LLN0.BR.BRep01", or "none"',
 }
+_FOLDERS = {
+    "events_directory": 'a folder of the relay such as "COMTRADE"',
+    "reports_directory": 'a folder of the relay such as "REPORTS", or "none"',
+}
 _LONGEST = 200
+_Word = TypeVar("_Word", bound=StrEnum)
 
 
 class TriggerAction(StrEnum):
@@ -29,12 +37,21 @@ class TriggerAction(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Overrides:
-    """What to use of a relay. None: what is recognised; `NONE` in place of a reference: nothing."""
+    """What to use of a relay. None: what is recognised.
+
+    `NONE` in place of a reference, or of the folder of text reports: nothing.
+
+    report_date_order: of its text reports; None: as their headings show it.
+    report_power_unit: of P and Q in its load profiles; None: they are left out.
+    """
 
     trigger: str | None = None
     trigger_action: TriggerAction | None = None
     report_control: str | None = None
     events_directory: str | None = None
+    reports_directory: str | None = None
+    report_date_order: DateOrder | None = None
+    report_power_unit: PowerUnit | None = None
 
 
 AS_RECOGNISED = Overrides()
@@ -56,25 +73,17 @@ def overrides_from_table(table: object) -> Overrides:
     if not isinstance(table, Mapping):
         raise OverrideError("relay", expected="a table", found=repr(table))
     given = dict(table)
-    action = given.pop("trigger_action", None)
-    if action is not None and action not in tuple(TriggerAction):
-        raise OverrideError(
-            "relay.trigger_action",
-            expected=" or ".join(map(repr, map(str, TriggerAction))),
-            found=repr(action),
-        )
+    action = _word("trigger_action", given.pop("trigger_action", None), TriggerAction)
     trigger, report_control = (
         _reference(name, given.pop(name, None), expected) for name, expected in _REFERENCES.items()
     )
-    directory = given.pop("events_directory", None)
-    if directory is not None and not (isinstance(directory, str) and _printable(directory)):
-        raise OverrideError(
-            "relay.events_directory",
-            expected='a folder of the relay such as "COMTRADE"',
-            found=repr(directory),
-        )
+    directory, reports = (
+        _folder(name, given.pop(name, None), expected) for name, expected in _FOLDERS.items()
+    )
+    order = _word("report_date_order", given.pop("report_date_order", None), DateOrder)
+    unit = _word("report_power_unit", given.pop("report_power_unit", None), PowerUnit)
     if given:
-        known = [*_REFERENCES, "trigger_action", "events_directory", "name"]
+        known = [field.name for field in fields(Overrides)] + ["name"]
         unknown = next(iter(given))
         raise OverrideError(
             f"relay.{unknown}",
@@ -84,10 +93,30 @@ def overrides_from_table(table: object) -> Overrides:
         )
     return Overrides(
         trigger=trigger,
-        trigger_action=None if action is None else TriggerAction(action),
+        trigger_action=action,
         report_control=report_control,
         events_directory=directory,
+        reports_directory=reports,
+        report_date_order=order,
+        report_power_unit=unit,
     )
+
+
+def _folder(name: str, value: object, expected: str) -> str | None:
+    if value is None:
+        return None
+    if not (isinstance(value, str) and _printable(value)):
+        raise OverrideError(f"relay.{name}", expected=expected, found=repr(value))
+    return value
+
+
+def _word(name: str, value: object, words: type[_Word]) -> _Word | None:
+    if value is None:
+        return None
+    if value not in tuple(words):
+        expected = " or ".join(repr(word.value) for word in words)
+        raise OverrideError(f"relay.{name}", expected=expected, found=repr(value))
+    return words(str(value))
 
 
 def _reference(name: str, value: object, expected: str) -> str | None:

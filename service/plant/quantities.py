@@ -82,3 +82,10 @@ class AveragingStep(IntEnum):
     AS_SAMPLED = 0
     MINUTE = 60
     QUARTER_HOUR = 900
+
+
+class PowerUnit(StrEnum):
+    """Unit of the powers P and Q of a relay's load profile; var and kvar are meant, too."""
+
+    W = "W"
+    KW = "kW"

@@ -14,9 +14,9 @@ from service.api.document import Name
 from service.api.limits.body_limits import MAX_REPORT_BYTES, REPORT_TYPE
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
-from service.api.relay_reports.keeping import keep_report
-from service.api.relay_reports.load_profile import PowerUnit
+from service.api.relay_reports.keeping import keep_brought
 from service.api.relay_reports.schemas import RelayEventEntry, ReportImport
+from service.plant import PowerUnit
 
 router = APIRouter(prefix="/motors/{name}", tags=["motors"])
 
@@ -62,7 +62,7 @@ def import_report(
     power_unit: UnitOfPower = None,
 ) -> ReportImport:
     """Keep what a text report of a motor's relay tells: starts, load, statistics, events."""
-    return keep_report(
+    return keep_brought(
         context,
         name,
         report,

@@ -20,7 +20,7 @@ class ImportedStart(Document):
 class LeftOutStart(Document):
     """A start of a relay's report that cannot be kept, and why."""
 
-    time: Time
+    time: Time = Field(validation_alias="time_ns")
     reason: str
 
 
@@ -55,8 +55,8 @@ class LoadImport(Document):
 class StatisticsImport(Document):
     """Whether the statistics of a motor were kept; they are where they were not known."""
 
-    time: Time
-    since_time: Time | None
+    time: Time = Field(validation_alias="time_ns")
+    since_time: Time | None = Field(validation_alias="since_ns")
     added: bool
 
 

@@ -93,7 +93,8 @@ class Acquisition(Document):
 
     asked: whether the relay itself was asked at `found_time`, or its SCL is taken at its word. trigger: the
     control that makes a record; trigger_action: set and reset, or a pulse that falls by itself.
-    records_told_by: what tells of a new record. overridden: what the motors file decides. remarks: what
+    records_told_by: what tells of a new record. text_reports: those that the relay lists, and the service
+    reads; empty until it has looked. overridden: what the motors file decides. remarks: what
     cannot be had of it, and what is used instead.
     """
 
@@ -107,6 +108,7 @@ class Acquisition(Document):
     records_told_by: Literal["buffered-report", "unbuffered-report", "polling"]
     report_control: str | None
     events_directory: str | None
+    text_reports: Listed[str] = Field(default_factory=list)
     overridden: Listed[str]
     remarks: Listed[str]
 

@@ -197,9 +197,10 @@ class Gateway:
 
     def _start_session(self, relay: str) -> None:
         """Start the session of a relay on a thread of its own."""
+        motor = self._plant.motor_of(relay).motor
         session = RelaySession(
             self._plant.relay(relay),
-            self._plant.motor_of(relay).name,
+            motor.name,
             self._repository,
             self._store,
             self._settings,
@@ -207,6 +208,7 @@ class Gateway:
             visit_marks=self._visit_marks,
             on_sample=self._batches.add_sample,
             on_note=self._batches.add_note,
+            reported=motor,
         )
         thread = Thread(target=session.run, name=f"relay-{relay}", daemon=True)
         thread.start()

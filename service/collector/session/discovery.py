@@ -79,6 +79,7 @@ class Discovery:
         report_control: str | None,
         directory: str | None,
         remarks: Sequence[str],
+        text_reports: Sequence[str],
         ignored: Sequence[RefusedFile],
         ignored_in_all: int,
     ) -> None:
@@ -89,7 +90,7 @@ class Discovery:
         findings = RelayFindings(
             ied=self._relay.name,
             found_ns=self._browsed_ns,
-            acquisition=self._acquisition_document(report_control, directory, remarks),
+            acquisition=self._acquisition_document(report_control, directory, remarks, text_reports),
             differences=self._differences,
             ignored_files=[asdict(each) for each in ignored],
             ignored_in_all=ignored_in_all,
@@ -99,7 +100,11 @@ class Discovery:
             self._saved = findings
 
     def _acquisition_document(
-        self, report_control: str | None, directory: str | None, remarks: Sequence[str]
+        self,
+        report_control: str | None,
+        directory: str | None,
+        remarks: Sequence[str],
+        text_reports: Sequence[str],
     ) -> dict[str, object]:
         found = self._acquisition
         overrides = self._relay.overrides
@@ -113,6 +118,7 @@ class Discovery:
             "records_told_by": _announced_by(report_control),
             "report_control": report_control,
             "events_directory": "/" if directory == ROOT else directory,
+            "text_reports": list(text_reports),
             "overridden": [name for name, value in asdict(overrides).items() if value is not None],
             "remarks": [
                 *([] if found.asked else [NOT_BROWSED]),

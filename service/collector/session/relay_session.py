@@ -12,6 +12,7 @@ from threading import Event
 import structlog
 from sqlalchemy.exc import SQLAlchemyError
 
+from core.machines.parameters import Motor
 from mms import Client, CredentialFileError, MmsError, ProtocolError
 from service.collector.records.directory import RecordDirectory
 from service.collector.records.event_folders import EventFolders
@@ -27,6 +28,7 @@ from service.collector.session.relay_alarms import RelayAlarms
 from service.collector.session.report_subscription import ReportQueue, ReportSubscription
 from service.collector.session.session_policy import SESSION_POLICY, SessionPolicy
 from service.collector.session.visit_marks import VisitMark, VisitMarks
+from service.collector.text_reports.text_reports import TextReports
 from service.collector.triggers.trigger_queue import TriggerQueue
 from service.configuration.relay_access import AccessError, credentials
 from service.configuration.settings import Settings
@@ -60,6 +62,7 @@ class RelaySession:
         visit_marks: VisitMarks | None = None,
         on_sample: Callable[[Sample], None] | None = None,
         on_note: Callable[[LinkNote], None] | None = None,
+        reported: Motor | None = None,
         policy: SessionPolicy = SESSION_POLICY,
     ) -> None:
         """Put together what one relay needs; `run` then connects. Raises SQLAlchemyError.
@@ -68,6 +71,7 @@ class RelaySession:
         visit_marks: where a visit is marked, for whoever finds the process dead; None where nobody looks.
         on_sample: takes what the relay measures; None where nobody wants it.
         on_note: takes what goes over a link that stays up; None where it is written at once.
+        reported: the motor that the relay's text reports tell of; None where nobody wants them.
         """
         self._relay = relay
         self._repository = repository
@@ -114,6 +118,18 @@ class RelaySession:
             None
             if on_sample is None
             else Metering(relay, motor, period_s=settings.metering_period_s, on_sample=on_sample)
+        )
+        self._text_reports = (
+            None
+            if reported is None
+            else TextReports(
+                relay,
+                reported,
+                repository,
+                period_s=settings.text_report_period_s,
+                allowance=allowance,
+                on_bytes=self._link.received,
+            )
         )
         self._protocol_faults = ProtocolFaultCounter(
             relay.name, repository, QuarantinePolicy.starting_with(settings.quarantine_s), policy=policy
@@ -307,15 +323,20 @@ class RelaySession:
         expecting = bool(scan.waiting) or time.monotonic() < self._record_expected_until_s
         if not expecting:
             self._subscription.save_entry_id()
+        if self._text_reports is not None and not (expecting or triggered) and until_trigger_s == math.inf:
+            self._text_reports.work_if_due(client)
         self._note_findings(scan)
         # Where a report will announce the record, there is nothing to look for until it comes.
         return expecting or (triggered and self._subscription.report_control is None)
 
     def _note_findings(self, scan: Scan) -> None:
+        reports = self._text_reports
+        unread = [] if reports is None or reports.remark is None else [reports.remark]
         self._discovery.save(
             report_control=self._subscription.report_control,
             directory=self._folders.directory,
-            remarks=self._remarks(),
+            remarks=[*self._remarks(), *unread],
+            text_reports=() if reports is None else reports.offered,
             ignored=scan.ignored,
             ignored_in_all=scan.ignored_in_all,
         )

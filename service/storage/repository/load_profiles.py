@@ -29,7 +29,9 @@ _QUARTER_NS = AveragingStep.QUARTER_HOUR.value * NANOSECONDS_PER_SECOND
 
 
 class LoadProfileRows(Sessions):
-    def add_load_profile(self, motor: str, rows: Sequence[Sample], *, by: Actor, now_ns: int) -> ImportedLoad:
+    def add_load_profile(
+        self, motor: str, rows: Sequence[Sample], *, by: Actor | None, now_ns: int
+    ) -> ImportedLoad:
         """Keep the rows of a relay's load profile, with their means.
 
         A quarter of an hour of which anything is known stays as it is: the service polls more often than a
@@ -54,7 +56,7 @@ class LoadProfileRows(Sessions):
                 for finer, step_s in pairwise(step.value for step in AveragingStep):
                     insert_means(session, finer, step_s, from_ns, to_ns, of_load_profile=motor)
             counts = ImportedLoad(len(added), len(over) - len(added), len(latest) - len(over))
-            if added:
+            if added and by is not None:
                 after = {"report": "LDP", "rows": len(added)}
                 note_change(
                     session, by, AuditAction.REPORT_IMPORTED, ("motor", motor), now_ns=now_ns, after=after

@@ -14,9 +14,9 @@ from service.api.access.requirements import require
 from service.api.document import Name
 from service.api.problems import ProblemError
 from service.api.recordings.routes import FormLimits
-from service.api.relay_reports.keeping import keep_report
-from service.api.relay_reports.load_profile import PowerUnit
+from service.api.relay_reports.keeping import keep_brought
 from service.api.relay_reports.schemas import ReportImport
+from service.plant import PowerUnit
 from service.web.view import Looking, View
 
 router = APIRouter()
@@ -53,7 +53,7 @@ def bring_report(
         why = "its file is empty" if file_name else "choose its file first"
         return _shown(view, name, BroughtFile(file_name, date_order, power_unit, refused=why))
     try:
-        kept = keep_report(
+        kept = keep_brought(
             view.context,
             name,
             text,

@@ -32,6 +32,7 @@ ALARM_RULES: Final[Mapping[str, str]] = {
 COLLECTING: Final[Mapping[str, str]] = {
     "poll_period_s": "how often the directory of a relay is listed",
     "metering_period_s": "how often measured values are read; 0 for never",
+    "text_report_period_s": "how often text reports of relays are looked for; 0 for never",
     "record_timeout_s": "how long a requested record may take",
     "request_timeout_s": "how long a relay may take to answer",
     "quarantine_s": "how long a relay is set aside the first time",

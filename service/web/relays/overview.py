@@ -45,6 +45,7 @@ USED: Final[Sequence[tuple[str, str]]] = (
     ("records_told_by", "Records told by"),
     ("report_control", "Report control"),
     ("events_directory", "Events directory"),
+    ("text_reports", "Text reports"),
 )
 """What the service uses of a relay, by its names in RelayFindings.acquisition."""
 
@@ -255,4 +256,6 @@ def clock_of(relay: IedEntry, most_s: float) -> RelayClock | None:
 
 
 def _text(value: object) -> str | None:
+    if isinstance(value, list):
+        return ", ".join(map(str, value)) or None
     return None if value is None else str(value)

@@ -15,6 +15,7 @@ from core.relay_reports import (
     ReportError,
     ReportKind,
     StateChange,
+    clock_of_report,
     kind_of_report,
     read_load_profile,
     read_motor_starts,
@@ -39,6 +40,39 @@ def test_a_sequence_of_events_is_in_order_of_time_and_keeps_messages() -> None:
         StateChange(RUNNING_NS, "RUNNING", asserted=True),
     )
     assert read_sequence_of_events(CSER) == (changes[1], changes[3])
+
+
+def test_a_sequence_with_the_oldest_first_is_the_same_by_its_numbers() -> None:
+    """Manuals of the SEL-351A and the SEL-751 say that SER shows row 1, the newest, at the end."""
+    head, _, rows = SER.partition("STATE\n")
+    upwards = "".join(reversed(rows.splitlines(keepends=True)))
+    assert read_sequence_of_events(f"{head}STATE\n{upwards}") == read_sequence_of_events(SER)
+
+
+def test_reports_in_the_layout_that_manuals_print() -> None:
+    """Two lines of heading (SEL-749M, 20080918, 1.6); numbered rows of load (SEL-734, 20090730, 10.28)."""
+    heading = (
+        "=>>LDP 2 <Enter>\n"
+        "SEL-749M                      Date: 05/21/08   Time: 08:15:09.609\n"
+        "MOTOR RELAY                   Time Source: internal\n"
+        "FID=SEL-749M-R102-V0-Z002002-D20041022   CID=3BB9\n\n"
+    )
+    profile = (
+        heading + "#   DATE       TIME      IA_MAG  VAB_MAG\n1   05/21/2008 08:00:00  12.500  401.200\n=>>\n"
+    )
+    rows = read_load_profile(profile)
+    assert rows.values["VAB_MAG"].tolist() == [401.2]
+    assert clock_of_report(profile) == nanoseconds("2008-05-21T08:15:09.609Z")
+    for nothing in ("No Load Profile Data", "No data available."):
+        assert read_load_profile(heading + nothing).time_ns.size == 0
+    assert read_sequence_of_events(heading + "No SER data.") == ()
+
+
+def test_a_clock_is_found_in_a_heading_alone() -> None:
+    assert clock_of_report(MSR) == nanoseconds("2026-03-29T10:15:30.125Z")
+    assert clock_of_report(CSER) is None
+    with pytest.raises(ReportError, match="date"):
+        clock_of_report(MSR, date_order=DateOrder.YMD)
 
 
 def test_a_load_profile_has_the_columns_that_it_names() -> None:

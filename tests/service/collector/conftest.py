@@ -9,6 +9,7 @@ from threading import Thread
 
 import pytest
 
+from core.machines.parameters import Motor
 from service.collector.records.policy import RecordPolicy
 from service.collector.session.relay_session import RelaySession
 from service.collector.session.session_policy import SESSION_POLICY, SessionPolicy
@@ -44,6 +45,7 @@ class Bench:
     settings: Settings
     relay_root: Path
     policy: SessionPolicy = SESSION_POLICY
+    reported: Motor | None = None
 
     def start_relay(self) -> ScriptedRelay:
         return ScriptedRelay(self.relay_root, self.relay.port)
@@ -58,6 +60,7 @@ class Bench:
             self.store,
             self.settings,
             on_sample=on_sample,
+            reported=self.reported,
             policy=self.policy,
         )
         thread = Thread(target=session.run)

@@ -160,11 +160,15 @@ def test_a_relay_that_cannot_be_triggered_is_taken_all_the_same(motors: Path, tm
 
 def test_the_motors_file_may_decide_about_the_relay(motors: Path) -> None:
     text = motors.read_text(encoding="utf-8")
-    table = '[motor.relay]\ntrigger = "none"\nevents_directory = "COMTRADE"\n\n[motor.nameplate]'
+    reports = 'reports_directory = "none"\nreport_date_order = "DMY"\nreport_power_unit = "kW"\n'
+    decisions = f'trigger = "none"\nevents_directory = "COMTRADE"\n{reports}'
+    table = f"[motor.relay]\n{decisions}\n[motor.nameplate]"
     motors.write_text(text.replace("[motor.nameplate]", table, 1))
     plant = read_plant(settings(motors))
     decided, left = plant.relays[:2]
     assert (decided.overrides.trigger, decided.overrides.events_directory) == ("none", "COMTRADE")
+    assert decided.overrides.reports_directory == "none"
+    assert (decided.overrides.report_date_order, decided.overrides.report_power_unit) == ("DMY", "kW")
     assert left.overrides == Overrides()
 
 
@@ -180,8 +184,14 @@ def test_the_motors_file_may_decide_about_the_relay(motors: Path) -> None:
         ('trigger_action = "push"', "relay.trigger_action: expected 'set-reset' or 'pulse', found 'push'"),
         ('events_directory = ""', "relay.events_directory: expected a folder of the relay"),
         (
+            'report_date_order = "YDM"',
+            "relay.report_date_order: expected 'MDY' or 'YMD' or 'DMY', found 'YDM'",
+        ),
+        ('report_power_unit = "MW"', "relay.report_power_unit: expected 'W' or 'kW', found 'MW'"),
+        ("reports_directory = 1", "relay.reports_directory: expected a folder of the relay"),
+        (
             'folder = "EVENTS"',
-            "relay.folder: expected one of trigger, report_control, trigger_action, events_",
+            "relay.folder: expected one of trigger, trigger_action, report_control, events_",
         ),
     ],
 )

@@ -23,11 +23,11 @@ SAME_START_NS: Final = 5 * NANOSECONDS_PER_SECOND
 
 class StartReportRows(Sessions):
     def add_reported_starts(
-        self, motor: str, starts: Sequence[ReportedStart], *, by: Actor, now_ns: int
+        self, motor: str, starts: Sequence[ReportedStart], *, by: Actor | None, now_ns: int
     ) -> tuple[ImportedStart, ...]:
         """Keep the starts of a relay's report; what is kept of them already stays as it is.
 
-        Raises NotFoundError.
+        by: None leaves no entry in the audit trail.  Raises NotFoundError.
         """
         with self._write() as session:
             found(session, MotorRow, motor, "motor", lock=True)
@@ -35,7 +35,8 @@ class StartReportRows(Sessions):
             counts = {
                 outcome.value: sum(one.outcome is outcome for one in imported) for outcome in ReportOutcome
             }
-            if counts[ReportOutcome.ADDED] or counts[ReportOutcome.JOINED]:
+            is_new = counts[ReportOutcome.ADDED] or counts[ReportOutcome.JOINED]
+            if is_new and by is not None:
                 action, after = AuditAction.REPORT_IMPORTED, {"report": "MSR", **counts}
                 note_change(session, by, action, ("motor", motor), now_ns=now_ns, after=after)
             return imported

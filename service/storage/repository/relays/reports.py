@@ -24,7 +24,7 @@ _CURRENTS: Final = [
 
 class RelayReportRows(Sessions):
     def add_relay_statistics(
-        self, motor: str, statistics: MotorStatistics, *, by: Actor, now_ns: int
+        self, motor: str, statistics: MotorStatistics, *, by: Actor | None, now_ns: int
     ) -> bool:
         """Keep the statistics of a report, and tell whether they were not known. Raises NotFoundError."""
         with self._write() as session:
@@ -46,10 +46,11 @@ class RelayReportRows(Sessions):
                     trips=dict(statistics.trips),
                 )
             )
-            after = {"report": "MOT", "time_ns": statistics.time_ns}
-            note_change(
-                session, by, AuditAction.REPORT_IMPORTED, ("motor", motor), now_ns=now_ns, after=after
-            )
+            if by is not None:
+                after = {"report": "MOT", "time_ns": statistics.time_ns}
+                note_change(
+                    session, by, AuditAction.REPORT_IMPORTED, ("motor", motor), now_ns=now_ns, after=after
+                )
             return True
 
     def latest_relay_statistics(self, motor: str) -> MotorStatistics | None:
@@ -87,7 +88,9 @@ class RelayReportRows(Sessions):
             (running or 0) / _QUARTERS_OF_AN_HOUR, (known or 0) / _QUARTERS_OF_AN_HOUR, first_ns
         )
 
-    def add_relay_events(self, motor: str, events: Sequence[RelayEvent], *, by: Actor, now_ns: int) -> int:
+    def add_relay_events(
+        self, motor: str, events: Sequence[RelayEvent], *, by: Actor | None, now_ns: int
+    ) -> int:
         """Keep starts, stops and trips, and return how many of them were not known. Raises NotFoundError."""
         with self._write() as session:
             found(session, MotorRow, motor, "motor", lock=True)
@@ -102,7 +105,7 @@ class RelayReportRows(Sessions):
             known = {(kind, time_ns) for kind, time_ns in session.execute(query)}
             added = {(event.kind, event.time_ns) for event in events} - known
             session.add_all(RelayEventRow(motor=motor, kind=kind, time_ns=time_ns) for kind, time_ns in added)
-            if added:
+            if added and by is not None:
                 after = {"report": "SER", "events": len(added)}
                 note_change(
                     session, by, AuditAction.REPORT_IMPORTED, ("motor", motor), now_ns=now_ns, after=after

@@ -1,24 +1,15 @@
 """Load profiles (LDP): their rows become measured values of the motor."""
 
 from collections.abc import Mapping
-from enum import StrEnum
 from typing import Final
 
 from core.relay_reports import LoadRows, read_load_profile
-from service.api.relay_reports.brought import LATER, BroughtReport
-from service.api.relay_reports.errors import refused
-from service.api.relay_reports.schemas import LeftOutColumn, LoadImport
-from service.plant import MeteredQuantity
+from service.plant import MeteredQuantity, PowerUnit
+from service.relay_reports.brought import LATER, BroughtReport
+from service.relay_reports.errors import RefusedReportError
+from service.relay_reports.kept import KeptLoad, LeftOutColumn
 from service.storage import Repository
 from service.storage.records import Sample
-
-
-class PowerUnit(StrEnum):
-    """Unit of the powers P and Q of a load profile; var and kvar are meant, too."""
-
-    W = "W"
-    KW = "kW"
-
 
 _PLAIN: Final[Mapping[str, MeteredQuantity]] = {
     "IA_MAG": MeteredQuantity.IA,
@@ -41,18 +32,18 @@ _NO_UNIT: Final = "no report tells its unit: say power_unit, W or kW"
 _NO_PLACE: Final = "it is none of the quantities that the service keeps"
 
 
-def keep_load_profile(
-    repository: Repository, motor: str, brought: BroughtReport, power_unit: PowerUnit | None
-) -> LoadImport:
-    """Keep the rows of a load profile. Raises ReportError, ProblemError."""
+def keep_load_profile(repository: Repository, motor: str, brought: BroughtReport) -> KeptLoad:
+    """Keep the rows of a load profile. Raises ReportError, RefusedReportError."""
     rows = read_load_profile(brought.text, date_order=brought.date_order)
-    factors, left_out = _columns(rows, power_unit)
+    factors, left_out = _columns(rows, brought.power_unit)
     if rows.values and not factors:
-        raise refused("body: heading", f"expected IA_MAG or another quantity, found {', '.join(rows.values)}")
+        raise RefusedReportError(
+            "heading", f"expected IA_MAG or another quantity, found {', '.join(rows.values)}"
+        )
     _refuse_negative(rows, factors)
     times_ns = [brought.utc_ns(time_ns) for time_ns in rows.time_ns.tolist()]
     if times_ns and all(map(brought.is_ahead, times_ns)):
-        raise refused("body", f"none of {len(times_ns)} rows can be kept: {LATER}")
+        raise RefusedReportError("", f"none of {len(times_ns)} rows can be kept: {LATER}")
     samples = [
         Sample(
             motor,
@@ -65,7 +56,7 @@ def keep_load_profile(
         for place, time_ns in enumerate(times_ns)
     ]
     counts = repository.add_load_profile(motor, samples, by=brought.by, now_ns=brought.now_ns)
-    return LoadImport(
+    return KeptLoad(
         added=counts.added,
         known=counts.known,
         not_over=counts.not_over,
@@ -93,4 +84,4 @@ def _refuse_negative(rows: LoadRows, columns: Mapping[str, tuple[MeteredQuantity
     for label, (quantity, _) in columns.items():
         lowest = float(rows.values[label].min(initial=0.0))
         if quantity not in _SIGNED and lowest < 0.0:
-            raise refused(f"body: {label}", f"expected 0 or more, found {lowest:g}")
+            raise RefusedReportError(label, f"expected 0 or more, found {lowest:g}")

@@ -7,6 +7,7 @@ from zoneinfo import ZoneInfo
 from core.recordings.local_time import utc_of
 from core.relay_reports.clock_times import DateOrder
 from core.units import NANOSECONDS_PER_DAY
+from service.plant import PowerUnit
 from service.storage.records import Actor
 
 AHEAD_NS: Final = NANOSECONDS_PER_DAY
@@ -18,13 +19,16 @@ LATER: Final = "expected a time that has been, found a later one: see date_order
 class BroughtReport:
     """A report of a motor's relay.
 
-    zone: that of the relay's clock.  by, now_ns: who brought it, and when.
+    zone: that of the relay's clock.  power_unit: of a load profile; None where nobody said it.
+    by, now_ns: who brought it, and when; None where the service fetched it from the relay, which leaves no
+    entry in the audit trail, as recordings leave none.
     """
 
     text: bytes
     date_order: DateOrder
+    power_unit: PowerUnit | None
     zone: ZoneInfo
-    by: Actor
+    by: Actor | None
     now_ns: int
 
     def utc_ns(self, time_ns: int) -> int:

@@ -7,9 +7,9 @@ from core.machines.parameters import Motor
 from core.relay_reports import StartReport, read_motor_starts
 from core.starts.errors import NoStartError
 from core.starts.reported import reported_start
-from service.api.relay_reports.brought import LATER, BroughtReport
-from service.api.relay_reports.errors import refused
-from service.api.relay_reports.schemas import LeftOutStart, StartImport
+from service.relay_reports.brought import LATER, BroughtReport
+from service.relay_reports.errors import RefusedReportError
+from service.relay_reports.kept import KeptStarts, LeftOutStart
 from service.storage import Repository
 from service.storage.records import ReportedStart
 
@@ -22,16 +22,16 @@ class _Starts:
     left_out: Sequence[LeftOutStart]
 
 
-def keep_starts(repository: Repository, motor: Motor, brought: BroughtReport) -> StartImport:
+def keep_starts(repository: Repository, motor: Motor, brought: BroughtReport) -> KeptStarts:
     """Keep the starts of a report. One that is recorded, too, is joined with its recording.
 
-    Raises ReportError, ProblemError where no start of a report has any figures.
+    Raises ReportError, RefusedReportError where no start of a report has any figures.
     """
     frequency_Hz = motor.nameplate.rated_frequency_Hz
     reports = read_motor_starts(brought.text, date_order=brought.date_order, frequency_Hz=frequency_Hz)
     found = _measured(motor, reports, brought)
     imported = repository.add_reported_starts(motor.name, found.starts, by=brought.by, now_ns=brought.now_ns)
-    return StartImport.model_validate({"starts": imported, "left_out": found.left_out})
+    return KeptStarts(imported, found.left_out)
 
 
 def _measured(motor: Motor, reports: Sequence[StartReport], brought: BroughtReport) -> _Starts:
@@ -41,17 +41,13 @@ def _measured(motor: Motor, reports: Sequence[StartReport], brought: BroughtRepo
         try:
             examined = reported_start(report, motor)
         except NoStartError as error:
-            left_out.append(_left_out(time_ns, str(error)))
+            left_out.append(LeftOutStart(time_ns, str(error)))
             continue
         if brought.is_ahead(time_ns):
-            left_out.append(_left_out(time_ns, LATER))
+            left_out.append(LeftOutStart(time_ns, LATER))
             continue
         starts.append(ReportedStart(time_ns, examined))
     if reports and not starts:
         message = f"none of {len(reports)} starts can be kept; of the first: {left_out[0].reason}"
-        raise refused("body", message)
+        raise RefusedReportError("", message)
     return _Starts(starts, left_out)
-
-
-def _left_out(time_ns: int, reason: str) -> LeftOutStart:
-    return LeftOutStart.model_validate({"time": time_ns, "reason": reason})

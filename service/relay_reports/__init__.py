@@ -1,0 +1,1 @@
+"""What text reports of motor relays tell of their motors, kept: starts, load, statistics, events."""
