@@ -39,6 +39,7 @@ ACQUISITION = {
     "records_told_by": "polling",
     "report_control": None,
     "events_directory": "COMTRADE",
+    "text_reports": ["CSER", "MSR"],
     "overridden": ["report_control"],
     "remarks": [],
 }
