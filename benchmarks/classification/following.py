@@ -3,8 +3,9 @@
 from collections import defaultdict
 
 from core.classification.classification import Classification
-from core.classification.motor import MOST_LOADS, MOST_RECORDS, MotorEvidence, RecordAnswer, classify_motor
+from core.classification.motor import MOST_LOADS, MOST_RECORDS, MotorEvidence, classify_motor
 from core.classification.record import classify_record
+from core.classification.record_answer import RecordAnswer
 from core.condition.following.follower import Follower
 from core.condition.kinds import moves_impedance
 from core.condition.measuring.observing import examine

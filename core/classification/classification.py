@@ -1,6 +1,7 @@
 """The one answer: which causes are likely, from independent evidence and what is known before."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from math import exp, log
 from typing import Final
 
@@ -122,6 +123,8 @@ class Classification:
         What is left open, and what would tell; empty where the answer is told.
     reasons : tuple of str
         Why, in words.
+    pairs : mapping of frozenset of Cause to float, optional
+        Log of the likelihood ratio of two causes that show in the same figures, to a healthy motor [nats].
     """
 
     answer: Explanation
@@ -130,6 +133,7 @@ class Classification:
     explanations: tuple[Explanation, ...]
     not_told_apart: tuple[NotToldApart, ...]
     reasons: tuple[str, ...]
+    pairs: Mapping[Causes, float] = field(default_factory=dict)
 
     @property
     def words(self) -> str:
@@ -160,6 +164,10 @@ class Classification:
             ],
             "not_told_apart": [one.as_dict() for one in self.not_told_apart],
             "reasons": list(self.reasons),
+            "pairs": [
+                {"causes": sorted(map(str, pair)), "log_likelihood_ratio": ratio}
+                for pair, ratio in self.pairs.items()
+            ],
         }
 
 
@@ -203,7 +211,14 @@ def classify(evidence: Evidence) -> Classification:
         explanations=tuple(found[:MOST_SHOWN]),
         not_told_apart=apart,
         reasons=_reasons(evidence, answer, likelihoods),
+        pairs=_pairs(evidence),
     )
+
+
+def _pairs(evidence: Evidence) -> dict[Causes, float]:
+    """Return the evidence of two causes together, where one block speaks of both; else it is their sum."""
+    spoken_of = {pair for block in evidence.blocks for pair in together(block.causes) if len(pair) == 2}
+    return {pair: sum(block.of(pair) for block in evidence.blocks) for pair in sorted(spoken_of, key=sorted)}
 
 
 def _log_prior(causes: Causes) -> float:

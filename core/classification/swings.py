@@ -62,9 +62,9 @@ def pulsation_block(
         The evidence; None where the record cannot tell.
     """
     swings: list[tuple[float, float, str]] = []
-    if rotor.load_oscillation_dB is not None and rotor.state in (RotorState.WATCH, RotorState.FAULT):
-        # The rotor's own rule tells a swing of the load from an inertia that is wrong.
-        is_of_load = any(reason.startswith(f"{LOAD_OSCILLATION}:") for reason in rotor.reasons)
+    # The rotor's own rule tells a swing of the load from an inertia that is wrong.
+    is_of_load = any(reason.startswith(f"{LOAD_OSCILLATION}:") for reason in rotor.reasons)
+    if rotor.load_oscillation_dB is not None and (is_of_load or rotor.state is not RotorState.UNSUPPORTED):
         swing = ratio(rotor.load_oscillation_dB) if is_of_load else 0.0
         swings.append((swing, TORQUE_NOISE, "at twice the slip"))
     if eccentricity.load_torque is not None and eccentricity.load_torque_deviation is not None:

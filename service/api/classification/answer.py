@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 
 from core.classification.classification import Classification
-from core.classification.motor import MOST_LOADS, MOST_RECORDS, MotorEvidence, RecordAnswer, classify_motor
+from core.classification.motor import MOST_LOADS, MOST_RECORDS, MotorEvidence, classify_motor
+from core.classification.record_answer import RecordAnswer
 from core.condition.kinds import Kind, State
 from core.starts.compared import StartChanges
 from service.api.starts.comparison import LATEST, reference_of

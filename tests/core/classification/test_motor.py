@@ -1,12 +1,15 @@
 """The answer of a motor, from a condition, a rotor and records that are given."""
 
+from collections.abc import Mapping
+from itertools import combinations
 from typing import Any
 
 import pytest
 
-from core.classification.causes import Cause
+from core.classification.causes import Cause, Causes
 from core.classification.classification import Classification
-from core.classification.motor import MotorEvidence, RecordAnswer, classify_motor
+from core.classification.motor import MotorEvidence, classify_motor
+from core.classification.record_answer import RecordAnswer
 from core.condition.kinds import Kind, State
 from core.rotor.finding import RotorState
 from core.rotor.trend import RotorCondition
@@ -72,9 +75,81 @@ def test_what_the_condition_leaves_open_is_left_open_with_what_would_tell() -> N
     assert any("another load" in test for test in found.not_told_apart[0].tests)
 
 
-def _with(**ratios: float) -> list[RecordAnswer]:
+def _probability(found: Classification, cause: Cause) -> float:
+    return next(one.probability for one in found.likelihoods if one.cause is cause)
+
+
+def test_candidates_of_a_fault_are_together_as_sure_as_one_that_is_named() -> None:
+    named = _answer(_condition(Kind.SHORTED_TURNS))
+    either = _answer(_condition(Kind.UNCLEAR, State.FAULT, Kind.SHORTED_TURNS, Kind.CONNECTION))
+    assert _probability(either, Cause.HEALTHY) == pytest.approx(_probability(named, Cause.HEALTHY), rel=0.1)
+    open_ones = [either.answer, *(pair.other for pair in either.not_told_apart)]
+    assert {one.causes for one in open_ones} == {
+        frozenset({Cause.SHORTED_TURNS}),
+        frozenset({Cause.CONNECTION}),
+    }
+
+
+@pytest.mark.parametrize("likelier", [Cause.SHORTED_TURNS, Cause.CONNECTION])
+def test_records_tell_which_candidate_of_a_fault_is_there(likelier: Cause) -> None:
+    condition = _condition(Kind.UNCLEAR, State.FAULT, Kind.SHORTED_TURNS, Kind.CONNECTION)
+    ratios = {"SHORTED_TURNS": 20.0, "CONNECTION": 20.0, likelier.name: 26.0}
+    found = _answer(condition, records=_with(None, **ratios))
+    assert found.is_told
+    assert found.answer.causes == {likelier}
+
+
+def test_the_records_tell_while_the_condition_does_not_know_what_surprises() -> None:
+    seen = (Cause.SHORTED_TURNS, Cause.CONNECTION, Cause.VOLTAGE_CHANNEL)
+    pairs = {frozenset(two): 20.0 for two in combinations(seen, 2)}
+    records = _with(pairs, SHORTED_TURNS=19.5, CONNECTION=12.0, VOLTAGE_CHANNEL=8.0)
+    found = _answer(_condition(Kind.UNCLEAR, State.WATCH), records=records)
+    assert found.is_told
+    assert found.answer.causes == {Cause.SHORTED_TURNS}
+
+
+def test_what_is_only_watched_leaves_a_sound_motor_open() -> None:
+    """Six sound motors in a thousand are watched, so that records alone make nothing of it certain."""
+    condition = _condition(Kind.UNCLEAR, State.WATCH, Kind.SHORTED_TURNS, Kind.VOLTAGE_CHANNEL)
+    found = _answer(condition, records=_with(SHORTED_TURNS=9.0, VOLTAGE_CHANNEL=1.0))
+    assert not found.is_told
+    assert frozenset() in {pair.other.causes for pair in found.not_told_apart}
+
+
+def test_a_broken_cage_is_why_the_motor_has_another_impedance() -> None:
+    drift = _drift(DriftCause.LEAKAGE, DriftCause.RATIO)
+    condition = _condition(Kind.PARAMETERS, State.WATCH)
+    broken = _answer(condition, rotor=UNEVEN, tracked=drift)
+    assert broken.answer.causes == {Cause.ROTOR}
+    assert "asymmetry" in next(one.figure for one in broken.likelihoods if one.cause is Cause.ROTOR)
+    assert _answer(condition, tracked=drift).answer.causes == {Cause.PARAMETERS}
+    beside = _condition(Kind.UNCLEAR, State.WATCH, Kind.PARAMETERS, Kind.SUPPLY)
+    assert Cause.PARAMETERS not in _answer(beside, rotor=UNEVEN, tracked=drift).answer.causes
+
+
+def test_causes_of_one_drift_are_not_there_all_at_once() -> None:
+    found = _answer(tracked=_drift(DriftCause.ROTOR, DriftCause.LEAKAGE), records=_with(PARAMETERS=6.0))
+    assert found.answer.causes == {Cause.PARAMETERS}
+    assert found.is_told
+
+
+def _with(pairs: Mapping[Causes, float] | None = None, **ratios: float) -> list[RecordAnswer]:
     told = {Cause[name]: ratio for name, ratio in ratios.items()}
-    return [RecordAnswer({**QUIET.log_likelihood_ratios, **told}, {})] * 3
+    return [RecordAnswer({**QUIET.log_likelihood_ratios, **told}, {}, pairs)] * 3
+
+
+def _drift(*causes: DriftCause) -> TrackedParameters:
+    return TrackedParameters(
+        state=TrackingState.DRIFTING,
+        parameters=(),
+        records=60,
+        as_of_ns=None,
+        reference_complete=True,
+        winding_excess_K=None,
+        winding_excess_K_ci95=None,
+        causes=causes,
+        reasons=(),
+    )
 
 
 def test_what_a_change_explains_speaks_for_no_other_cause() -> None:
@@ -85,21 +160,36 @@ def test_what_a_change_explains_speaks_for_no_other_cause() -> None:
 
 
 @pytest.mark.parametrize(
+    ("together", "causes"),
+    [(58.5, {Cause.SHORTED_TURNS}), (90.0, {Cause.SHORTED_TURNS, Cause.SUPPLY})],
+    ids=["usual supply", "unbalanced supply"],
+)
+def test_a_supply_counts_by_what_it_explains_beside_the_turns(together: float, causes: set[Cause]) -> None:
+    """Alone it explains most of what turns make of the figures, which says nothing of it."""
+    pairs = {frozenset({Cause.SHORTED_TURNS, Cause.SUPPLY}): together}
+    records = _with(pairs, SHORTED_TURNS=60.0, SUPPLY=58.0)
+    found = _answer(_condition(Kind.SHORTED_TURNS), records=records)
+    assert found.answer.causes == causes
+    assert found.is_told
+    supply = next(one for one in found.likelihoods if one.cause is Cause.SUPPLY)
+    assert supply.log_likelihood_ratio == pytest.approx(together - 60.0)
+
+
+def test_two_causes_that_explain_the_same_are_not_both_told() -> None:
+    pairs = {frozenset({Cause.SUPPLY, Cause.VOLTAGE_CHANNEL}): 20.5}
+    found = _answer(records=_with(pairs, SUPPLY=20.0, VOLTAGE_CHANNEL=12.0))
+    assert found.answer.causes == {Cause.SUPPLY}
+    assert found.is_told
+
+
+@pytest.mark.parametrize(
     ("gap", "causes"), [(40.0, {Cause.ECCENTRICITY}), (-4.0, {Cause.PARAMETERS})], ids=["uneven", "even"]
 )
 def test_another_magnetising_inductance_comes_with_an_eccentric_rotor(gap: float, causes: set[Cause]) -> None:
-    tracked = TrackedParameters(
-        state=TrackingState.DRIFTING,
-        parameters=(),
-        records=60,
-        as_of_ns=None,
-        reference_complete=True,
-        winding_excess_K=None,
-        winding_excess_K_ci95=None,
-        causes=(DriftCause.MAGNETISING,),
-        reasons=(),
+    found = _answer(
+        records=_with(ECCENTRICITY=gap, PARAMETERS=2.0 if gap < 0.0 else -1.5),
+        tracked=_drift(DriftCause.MAGNETISING),
     )
-    found = _answer(records=_with(ECCENTRICITY=gap, PARAMETERS=2.0 if gap < 0.0 else -1.5), tracked=tracked)
     assert found.answer.causes == causes
 
 
@@ -138,5 +228,10 @@ def test_records_are_read_back_from_their_documents() -> None:
     document = _answer(rotor=UNEVEN).as_dict()
     read = RecordAnswer.from_dict(document)
     assert read.log_likelihood_ratios[Cause.ROTOR] > 10.0
+    assert read.pairs is not None
+    assert frozenset({Cause.SHORTED_TURNS, Cause.CONNECTION}) in read.pairs
+    assert RecordAnswer.from_dict({"likelihoods": document["likelihoods"]}).pairs is None
+    with pytest.raises(TypeError, match="pairs"):
+        RecordAnswer.from_dict(document | {"pairs": "none"})
     with pytest.raises(TypeError, match="likelihoods"):
         RecordAnswer.from_dict({"likelihoods": None})

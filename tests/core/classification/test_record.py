@@ -92,3 +92,8 @@ def test_the_document_holds_all_that_is_said() -> None:
     assert document["is_told"] is True
     assert document["not_told_apart"] == []
     assert {"likelihoods", "explanations", "reasons", "probability", "words"} <= document.keys()
+    pairs = document["pairs"]
+    assert isinstance(pairs, list)
+    named = [one["causes"] for one in pairs]
+    assert ["stator-shorted-turns", "supply-unbalance"] in named
+    assert not any("rotor-asymmetry" in one for one in named), "it shows in figures of its own"
