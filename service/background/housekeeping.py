@@ -2,6 +2,8 @@
 
 from threading import Event
 
+import structlog
+
 from service.configuration.settings import Settings
 from service.retention.batches import Batches
 from service.retention.rules import measurement_rules
@@ -9,6 +11,8 @@ from service.storage import Repository
 from service.timing.wall_clock import WallClock
 
 PERIOD_S = 60.0
+
+log = structlog.get_logger(__name__)
 
 
 class Housekeeping:
@@ -27,8 +31,15 @@ class Housekeeping:
         self._clock = WallClock()
 
     def average_and_delete(self, now_ns: int, monotonic_ns: int) -> None:
-        """Average, then delete, as far as the wall clock can be trusted. Raises SQLAlchemyError."""
+        """Average, then delete, as far as the wall clock can be trusted. Raises SQLAlchemyError.
+
+        On PostgreSQL, make the partitions of the time under way and of the next before: also those of a clock
+        that is wrong, for values come with its times.
+        """
         self._clock.compare(now_ns, monotonic_ns)
+        made = self._repository.make_measurement_partitions(now_ns=now_ns)
+        if made:
+            log.info("partitions of measured values made", partitions=made)
         if self._clock.was_set:
             return
         self._repository.average_measurements(now_ns=now_ns)

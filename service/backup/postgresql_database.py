@@ -18,6 +18,7 @@ from service.backup.manifest import TableCopy
 from service.backup.verification import Verified
 from service.storage import connect, migrations
 from service.storage.database_url import readable_url
+from service.storage.partitions import has_partitions, make, partitions, waiting
 
 
 def copy_postgresql(url: str, folder: Path) -> DatabaseCopy:
@@ -110,6 +111,8 @@ class PostgresqlPlace:
         for table in tables:
             self._load_table(connection, backup, table)
         self._switch_triggers(connection, tables, "ENABLE")
+        if has_partitions(connection):
+            make(connection, waiting(connection))
 
     def _switch_triggers(self, connection: Connection, tables: Sequence[str], switch: str) -> None:
         for table in tables:
@@ -163,9 +166,14 @@ def _digests(connection: Connection) -> frozenset[str]:
 
 
 def _table_names(connection: Connection) -> list[str]:
-    """Return the tables of the database, each after those that it refers to."""
+    """Return the tables of the database, each after those that it refers to.
+
+    Their partitions are not among them: a table is copied with all of its rows, which find their partitions
+    again, or wait for them in the default one.
+    """
     names = [name for name, _ in inspect(connection).get_sorted_table_and_fkc_names() if name is not None]
-    return [name for name in names if name != VERSION_TABLE]
+    others = {VERSION_TABLE, *partitions(connection)}
+    return [name for name in names if name not in others]
 
 
 def _columns_of(connection: Connection, table: str) -> list[str]:
@@ -176,9 +184,12 @@ def _columns_of(connection: Connection, table: str) -> list[str]:
 
 def _copy_table(connection: Connection, table: str, folder: Path) -> TableCopy:
     columns = _columns_of(connection, table)
+    quote = connection.dialect.identifier_preparer.quote
+    # A table with partitions has no rows of its own to copy; a question finds those of all.
+    every_row = f"SELECT {', '.join(map(quote, columns))} FROM {quote(table)}"  # noqa: S608 - our names
     cursor = _cursor_of(connection)
     with create(folder / f"{table}.copy") as file, cursor:
-        with cursor.copy(f"COPY {_quoted_table(connection, table, columns)} TO STDOUT") as rows:
+        with cursor.copy(f"COPY ({every_row}) TO STDOUT") as rows:
             for chunk in rows:
                 file.write(chunk)
         return TableCopy(columns=columns, rows=cursor.rowcount)

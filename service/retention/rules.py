@@ -157,8 +157,8 @@ def measurement_rules(settings: Settings, repository: Repository, now_ns: int) -
     for setting, days, step in kinds:
         before_ns = _before(now_ns, days)
         amount = partial(repository.old_measurements, step.value, before_ns=before_ns)
-        forget = partial(repository.forget_measurements, step.value, before_ns=before_ns)
-        yield Rule(setting, days, partial(_sized, amount, "measurements"), partial(_forget, forget))
+        forget = partial(_forget_measurements, repository, step, before_ns)
+        yield Rule(setting, days, partial(_sized, amount, "measurements"), forget)
 
 
 def _keeping(setting: str) -> Rule:
@@ -177,6 +177,14 @@ def _sized(amount: Callable[[], Amount], table: str) -> Amount:
 
 def _forget(delete: Callable[[int], DeletedRows], batches: Batches) -> int:
     return batches.run(delete)
+
+
+def _forget_measurements(
+    repository: Repository, step: AveragingStep, before_ns: int, batches: Batches
+) -> int:
+    """Drop what is old as a whole, delete what is not in partitions; return how many rows were deleted."""
+    repository.drop_measurement_partitions(step.value, before_ns=before_ns)
+    return batches.run(partial(repository.forget_measurements, step.value, before_ns=before_ns))
 
 
 def _forget_recordings(

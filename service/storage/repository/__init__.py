@@ -29,6 +29,7 @@ from service.storage.repository.jobs.queue import JobRows
 from service.storage.repository.jobs.repetitions import RepetitionRows
 from service.storage.repository.jobs.runners import JobRunnerRows
 from service.storage.repository.load_profiles import LoadProfileRows
+from service.storage.repository.measurement_partitions import MeasurementPartitionRows
 from service.storage.repository.measurements import MeasurementRows
 from service.storage.repository.motor_health import MotorHealthRows
 from service.storage.repository.motor_versions import MotorVersionRows
@@ -86,6 +87,7 @@ class Repository(
     TrackingRows,
     StateCounts,
     MeasurementRows,
+    MeasurementPartitionRows,
     LoadProfileRows,
     RelayReportRows,
     BaselineRows,

@@ -5,13 +5,28 @@ from itertools import pairwise
 from time import monotonic
 from typing import Any
 
-from sqlalchemy import ColumnElement, bindparam, case, delete, exists, func, insert, literal, select
+from sqlalchemy import (
+    BigInteger,
+    ColumnElement,
+    TableClause,
+    bindparam,
+    case,
+    column,
+    delete,
+    exists,
+    func,
+    insert,
+    literal,
+    select,
+    table,
+)
 from sqlalchemy.orm import Session, aliased
 
 from core.units import NANOSECONDS_PER_SECOND
 from service.plant import AveragingStep, MeteredQuantity
 from service.storage.engine import one_at_a_time
 from service.storage.models import MeasurementRow, MotorRow
+from service.storage.partitions import row_wise
 from service.storage.records import Cursor, DeletedRows, Measurement, Page, Sample
 from service.storage.repository.sessions import Order, Sessions, found, page_of, within
 from service.storage.states import MeasurementSource
@@ -78,23 +93,28 @@ class MeasurementRows(Sessions):
                 average_until(session, finer, step_s, now_ns=now_ns)
 
     def forget_measurements(self, step_s: int, rows: int, *, before_ns: int) -> DeletedRows:
-        """Delete the oldest measurements of one step from before a time.
+        """Delete the oldest measurements of one step from before a time, but those in partitions.
 
         rows: about how many at most. Those of one time go together, so it may be one more for each motor.
         """
-        of_step = MeasurementRow.step_s == step_s
-        in_order = (
-            select(MeasurementRow.time_ns)
-            .where(of_step, MeasurementRow.time_ns < before_ns)
-            .order_by(MeasurementRow.time_ns)
-        )
+        with self._read() as session:
+            tables = [_times_of(name) for name in row_wise(session.connection())]
+        for one in tables:
+            deleted = self._forget_of(one, step_s, rows, before_ns)
+            if deleted.rows:
+                return deleted
+        return DeletedRows(0, 0.0)
+
+    def _forget_of(self, old: TableClause, step_s: int, rows: int, before_ns: int) -> DeletedRows:
+        of_step = old.c.step_s == step_s
+        in_order = select(old.c.time_ns).where(of_step, old.c.time_ns < before_ns).order_by(old.c.time_ns)
         with self._read() as session:
             # Where the batch ends is looked up before it begins, while others may write.
             end_ns = session.scalar(in_order.offset(rows - 1).limit(1))
         if end_ns is None:
             end_ns = before_ns - 1
         # One bound only: of two, SQLite takes the first for the index, and reads all rows up to it.
-        batch = delete(MeasurementRow).where(of_step, MeasurementRow.time_ns <= end_ns)
+        batch = delete(old).where(of_step, old.c.time_ns <= end_ns)
         with self._write() as session:
             connection = session.connection()
             began_s = monotonic()
@@ -118,6 +138,11 @@ class MeasurementRows(Sessions):
         with self._read() as session:
             found(session, MotorRow, motor, "motor")
             return page_of(session, query, order, _measurement, limit=limit, after=after)
+
+
+def _times_of(name: str) -> TableClause:
+    """Return a table of measured values with the columns that say which of them are old."""
+    return table(name, column("step_s", BigInteger), column("time_ns", BigInteger))
 
 
 def insert_samples(session: Session, samples: Iterable[Sample], source: MeasurementSource) -> None:
