@@ -87,6 +87,12 @@ def tables(amounts: Amounts) -> Iterator[Table]:
 
 def judge(connection: Connection) -> None:
     """Give each motor but the idle one a condition, and all motors their days."""
+    judge_motors(connection)
+    connection.execute(text(FILL))
+
+
+def judge_motors(connection: Connection) -> None:
+    """Give each motor but the idle one a condition."""
     conditions = Base.metadata.tables["conditions"]
     figures = dict(zip(_CHANGE_COLUMNS[5:], _said(0.012), strict=True))
     connection.execute(
@@ -94,7 +100,6 @@ def judge(connection: Connection) -> None:
         .where(conditions.c.motor != motor_name(IDLE))
         .values(version=1, as_of_ns=END_NS, since_ns=END_NS, document=condition_document(), **figures)
     )
-    connection.execute(text(FILL))
 
 
 def _observed(amounts: Amounts) -> Iterator[tuple[int, str, int]]:

@@ -46,29 +46,36 @@ def _load_sqlite(engine: Engine, tables: Iterable[Table], progress: Progress) ->
     assert file is not None
     engine.dispose()  # the mode of the journal changes only while nobody else has the file open
     connection = sqlite3.connect(file, isolation_level=None)
+    with without_sqlite_indexes(connection, progress):
+        for table in tables:
+            places = ", ".join("?" * len(table.columns))
+            columns = ", ".join(f'"{column}"' for column in table.columns)
+            insert = f"INSERT INTO {table.name} ({columns}) VALUES ({places})"  # noqa: S608 - our names
+            connection.execute("BEGIN")
+            written = connection.executemany(insert, table.rows).rowcount
+            connection.execute("COMMIT")
+            progress(f"{table.name}: {written:,} rows")
+    connection.close()
+
+
+@contextmanager
+def without_sqlite_indexes(connection: sqlite3.Connection, progress: Progress) -> Iterator[None]:
+    """Write without a journal and without indexes that are no constraints, and make them afterwards."""
     for pragma in ("journal_mode=OFF", "synchronous=OFF", "cache_size=-2000000", "foreign_keys=OFF"):
         connection.execute(f"PRAGMA {pragma}")
     kept = "SELECT name, sql FROM sqlite_master WHERE type = 'index' AND sql IS NOT NULL"
     indexes = connection.execute(kept).fetchall()
     for name, _statement in indexes:
         connection.execute(f"DROP INDEX {name}")
-    for table in tables:
-        places = ", ".join("?" * len(table.columns))
-        columns = ", ".join(f'"{column}"' for column in table.columns)
-        insert = f"INSERT INTO {table.name} ({columns}) VALUES ({places})"  # noqa: S608 - our names
-        connection.execute("BEGIN")
-        written = connection.executemany(insert, table.rows).rowcount
-        connection.execute("COMMIT")
-        progress(f"{table.name}: {written:,} rows")
+    yield
     for name, statement in indexes:
         connection.execute(statement)
         progress(f"index {name}")
     connection.execute("PRAGMA journal_mode=WAL")
-    connection.close()
 
 
 def _load_postgresql(engine: Engine, tables: Iterable[Table], progress: Progress) -> None:
-    with engine.begin() as connection, _without_indexes(connection, progress):
+    with engine.begin() as connection, without_indexes(connection, progress):
         connection.execute(text("SET LOCAL session_replication_role = replica"))  # foreign keys hold anyway
         connection.execute(text("SET LOCAL maintenance_work_mem = '1GB'"))
         for table in tables:
@@ -91,7 +98,7 @@ def _copy(connection: Connection, table: Table) -> int:
 
 
 @contextmanager
-def _without_indexes(connection: Connection, progress: Progress) -> Iterator[None]:
+def without_indexes(connection: Connection, progress: Progress) -> Iterator[None]:
     """Drop the indexes that are no constraints, and make them again."""
     query = text(
         "SELECT indexname, indexdef FROM pg_indexes WHERE schemaname = 'public'"

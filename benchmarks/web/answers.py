@@ -37,9 +37,9 @@ class Site:
 
 
 @contextmanager
-def serving(data: Path) -> Iterator[Site]:
-    """Run the site on a data directory, and yield it."""
-    command = [sys.executable, "-m", "benchmarks.web.server", str(data)]
+def serving(data: Path, url: str | None = None) -> Iterator[Site]:
+    """Run the site on a data directory, and yield it. url: of its database, where that lies elsewhere."""
+    command = [sys.executable, "-m", "benchmarks.web.server", str(data), *([url] if url else [])]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
         try:
             assert process.stdout is not None

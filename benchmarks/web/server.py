@@ -1,4 +1,4 @@
-"""The site as the service runs it, in a process of its own: python -m benchmarks.web.server DATA."""
+"""The site as the service runs it, in a process of its own: python -m benchmarks.web.server DATA [URL]."""
 
 import sys
 from functools import partial
@@ -19,7 +19,7 @@ def main() -> None:
     """Print the port and a session of all roles, then answer until the process is ended."""
     data = Path(sys.argv[1])
     settings = Settings(data_directory=data, port=0)
-    repository = Repository(connect(sqlite_url(data)))
+    repository = Repository(connect(sys.argv[2] if len(sys.argv) > 2 else sqlite_url(data)))
     app = create_site(ApiContext(settings, repository, RecordingStore(data / "recordings")))
     session = log_in(repository)
     spare_what_stays()
