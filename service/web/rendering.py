@@ -13,6 +13,7 @@ from service.condition.wording import cause
 from service.web import words
 from service.web.addresses import address, path_segment
 from service.web.static_files import static_tree
+from service.web.text_marks import with_marks
 
 LEAST_COMPRESSED_BYTES: Final = 1400
 """A shorter answer goes into one packet as it is."""
@@ -62,6 +63,7 @@ def environment() -> Environment:
         "duration": words.duration,
         "phrase": words.phrase,
         "cause": cause,
+        "marked": with_marks,
     }
     return made
 

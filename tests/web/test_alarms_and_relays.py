@@ -16,9 +16,9 @@ from testing.web.site import PHONE, Site, running_site
 COMMENT = "half a sentence"
 
 
-def raise_another(site: Site, subject: str) -> None:
+def raise_another(site: Site, subject: str, reason: str = "odd name") -> None:
     relay = site.repository.relays(limit=1).items[0].name
-    site.repository.raise_alarm(relay, AlarmKind.FILE_REFUSED, subject, "odd name", now_ns=time.time_ns())
+    site.repository.raise_alarm(relay, AlarmKind.FILE_REFUSED, subject, reason, now_ns=time.time_ns())
 
 
 def test_news_takes_away_neither_what_is_chosen_nor_what_is_typed(site: Site) -> None:
@@ -36,6 +36,20 @@ def test_news_takes_away_neither_what_is_chosen_nor_what_is_typed(site: Site) ->
     expect(comment).to_have_value(COMMENT)
     expect(page.page.locator(f"input[value='{chosen}']")).to_be_checked()
     assert page.page.locator("input[name=alarm]:checked").count() == 1
+
+
+def test_times_are_those_of_the_viewers_zone_and_utc_stands_in_their_titles(site: Site) -> None:
+    raise_another(site, "HR_00007.CFG", "of 2026-07-01T10:30:05Z, larger than `max_file_bytes`")
+    for zone, local in (("Europe/Berlin", "12:30:05"), ("America/New_York", "06:30:05")):
+        page = site.open(Role.VIEWER, time_zone=zone)
+        page.goto("/alarms")
+        alarm = page.page.locator(".alarm", has_text="HR_00007.CFG")
+        expect(alarm.locator(".reason")).to_have_text(
+            f"HR_00007.CFG: of 2026-07-01 {local}, larger than max_file_bytes"
+        )
+        expect(alarm.locator(".reason time")).to_have_attribute("title", "2026-07-01 10:30:05 UTC")
+        raised = alarm.locator(".when time[title]").last
+        assert raised.inner_text() + " UTC" != raised.get_attribute("title")
 
 
 def test_one_alarm_is_shelved_and_its_end_is_told_to_another_viewer(site: Site) -> None:

@@ -82,6 +82,25 @@ def test_a_page_can_be_read_without_scripts(looked_at: Site, route: str) -> None
         assert found[0] == found[1], part
 
 
+def test_nothing_moves_where_the_system_asks_for_that(looked_at: Site) -> None:
+    page = looked_at.open(Role.VIEWER)
+    page.goto("/")
+    page.page.emulate_media(reduced_motion="no-preference")
+    assert page.page.evaluate(MOVES), "this is how motion is seen"
+    page.page.emulate_media(reduced_motion="reduce")
+    assert not page.page.evaluate(MOVES)
+
+
+MOVES = """() => {
+    const one = document.querySelector("h1");
+    one.style.transition = "opacity 9s";
+    one.getBoundingClientRect();
+    one.style.opacity = one.style.opacity === "0.5" ? "1" : "0.5";
+    one.getBoundingClientRect();
+    return document.getAnimations().length > 0;
+}"""
+
+
 @pytest.mark.parametrize("role", list(Role))
 def test_each_role_sees_its_pages_and_buttons_that_it_may_press(looked_at: Site, role: Role) -> None:
     may = permissions_of([role])

@@ -20,6 +20,13 @@ LOOKED_AT = """() => {{
 }}"""
 
 
+TOP_OF_WORDS = """links => links.map((link) => {
+    const words = document.createRange();
+    words.selectNodeContents(link.lastChild);
+    return words.getBoundingClientRect().top;
+})"""
+
+
 def motors_of(page: WatchedPage) -> list[str]:
     return page.page.locator("table.fleet th[scope=row] > a:first-child").all_inner_texts()
 
@@ -52,6 +59,14 @@ def test_on_a_phone_the_motors_are_cards(looked_at: Site) -> None:
         expect(verdict).to_contain_text(words)
 
 
+def test_the_counts_stand_on_one_line(looked_at: Site) -> None:
+    page = looked_at.open(Role.VIEWER)
+    page.goto("/")
+    tops = page.page.locator("#summary .counts a").evaluate_all(TOP_OF_WORDS)
+    assert len(tops) > 2
+    assert max(tops) - min(tops) < 1.0
+
+
 def test_filters_are_in_the_address_and_survive_a_reload(looked_at: Site) -> None:
     page = looked_at.open(Role.VIEWER)
     page.goto("/")
@@ -68,6 +83,11 @@ def test_filters_are_in_the_address_and_survive_a_reload(looked_at: Site) -> Non
     assert motors_of(page) == [STANDING]
     page.page.go_back()
     assert motors_of(page) == [WELL]
+    page.page.get_by_role("combobox", name="State").select_option("")
+    page.page.get_by_role("combobox", name="Site").select_option("FACTORY_B")
+    page.page.wait_for_url(re.compile("site=FACTORY_B"))
+    expect(page.page.locator("table.fleet caption")).to_contain_text("3 of 6 motors")
+    assert FAULTY not in motors_of(page)
 
 
 def test_without_scripts_everything_can_be_read_and_filtered(looked_at: Site) -> None:

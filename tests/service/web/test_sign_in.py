@@ -8,6 +8,9 @@ import pytest
 from service.access.passwords import hashed
 from service.api import ApiContext
 from service.storage.records import Actor, Role
+from service.web.app import create_site
+from tests.service.api.serving import serving
+from tests.service.web.pages import page, words
 
 KNOWN_WORDS = "correct horse battery"
 BY = Actor("tests", "command line")
@@ -31,6 +34,25 @@ def test_who_is_not_logged_in_is_sent_to_log_in_and_back(anybody: httpx.Client, 
     assert answer.headers["location"] == "/account?tab=tokens"
     assert "HttpOnly" in answer.headers["set-cookie"]
     assert "SameSite=strict" in answer.headers["set-cookie"]
+
+
+def test_a_service_knows_nothing_of_a_viewer_that_another_one_would_not(
+    context: ApiContext, user: str
+) -> None:
+    """Two services on one database: what one has begun goes on with the other."""
+    with (
+        serving(create_site(context), as_somebody=False) as one,
+        serving(create_site(context), as_somebody=False) as other,
+    ):
+        one.headers["Accept"] = other.headers["Accept"] = "text/html"
+        one.post("/login", data={"name": user, "password": KNOWN_WORDS})
+        other.cookies.update(one.cookies)
+        for path in ("/", "/?text=pump", "/alarms?show=history", "/account"):
+            answers = [each.get(path) for each in (one, other)]
+            assert [answer.status_code for answer in answers] == [200, 200]
+            assert words(page(answers[0]), "main") == words(page(answers[1]), "main"), path
+        other.post("/logout")
+        assert one.get("/account").status_code == 303
 
 
 def test_nobody_is_sent_to_another_site(anybody: httpx.Client, user: str) -> None:

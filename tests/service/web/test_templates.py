@@ -79,7 +79,7 @@ def test_every_file_of_ours_is_looked_at() -> None:
     [
         '<p hx-on:click="x()">', "<a href='javascript:x'>", '<p onclick="x">', '<p style="x">',
         "<style>x</style>", "<script>x</script>", "{{ x | safe }}", '<img src="//x/y.png">',
-        '<div hx-trigger="click[x()]">',
+        '<div hx-trigger="click[x()]">', "<p hx-vals='js:{x: y()}'>", '<p hx-vals="js:{x: y()}">',
     ],
 )  # fmt: skip
 def test_what_is_looked_for_is_found(text: str) -> None:

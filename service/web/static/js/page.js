@@ -3,7 +3,7 @@
 const MINUTE_MS = 60_000;
 
 const local = new Intl.DateTimeFormat(undefined, {
-  year: "numeric", month: "2-digit", day: "2-digit", hour: "2-digit", minute: "2-digit", hourCycle: "h23",
+  year: "numeric", month: "2-digit", day: "2-digit", hour: "2-digit", minute: "2-digit", second: "2-digit", hourCycle: "h23",
 });
 
 function ageInWords(ms) {
@@ -15,15 +15,15 @@ function ageInWords(ms) {
   return whole === 1 ? "1 second" : `${whole} seconds`;
 }
 
-function inParts(date) {
+function inParts(date, hasSeconds) {
   const part = Object.fromEntries(local.formatToParts(date).map(({ type, value }) => [type, value]));
-  return `${part.year}-${part.month}-${part.day} ${part.hour}:${part.minute}`;
+  return `${part.year}-${part.month}-${part.day} ${part.hour}:${part.minute}${hasSeconds ? `:${part.second}` : ""}`;
 }
 
 /** Write the times below an element in the viewer's zone; UTC stays in their titles. */
 export function localise(root) {
   for (const element of root.querySelectorAll("time[data-local]")) {
-    element.textContent = inParts(new Date(element.dateTime));
+    element.textContent = inParts(new Date(element.dateTime), element.dataset.local === "seconds");
     delete element.dataset.local;
   }
   for (const element of root.querySelectorAll("time[data-age]")) {
