@@ -11,44 +11,13 @@ from collections.abc import Iterator
 from pathlib import Path
 from statistics import median
 
-from benchmarks.reporting import Section, table, write_sections
+from benchmarks.reporting import Section, table
 from benchmarks.takeover import jobs, relays
 from benchmarks.takeover.hosts import Fault, serving_site
+from benchmarks.takeover.page import PAGE, of_lease, write
 from service.configuration.settings import Settings
 from service.demo import MOTORS
 from service.plant import read_plant
-
-PAGE = Path(__file__).parents[2] / "docs" / "evidence" / "takeover.md"
-LEASES_S = (30.0, 5.0)
-"""Those of the page, in their order."""
-PREAMBLE = """\
-# Take-over times
-
-How long until other hosts do the work of one that is lost, with what [several
-hosts](../how-to/several-hosts.md) describes: one PostgreSQL server, one folder, a service, and beside it
-two hosts of gateways (`mcc collect`), then two of workers (`mcc work`). All are real processes on one
-machine with two cores, which others used too; the relays are six simulated ones.
-
-- **Killed**: all processes of the host end by SIGKILL. It is started again after the take-over.
-- **Frozen**: all of them stop by SIGSTOP, and go on after the take-over.
-- **Cut off from the database**: its connections stand, and nothing passes. What was sent meanwhile arrives
-  after the take-over.
-
-What is counted begins with the fault.
-
-- **Relays**: each relay that the host held makes a record right after the fault. The time ends when the
-  first of them is stored.
-- **Jobs**: the host has a job under way. The time ends when the recording of this job is diagnosed.
-
-The service takes part, so others are two of three. After each fault the lost host has to work again. Then
-each record that a relay made has to be stored once and diagnosed once, each queued recording diagnosed
-once, and the job of the lost host begun twice. Otherwise the command ends with 1. In the runs below nothing
-was lost, and nothing came twice.
-
-Who is lost is found by its lease (`lease_s`), so a shorter one shortens all times. It also makes a host
-lose its work that is merely slow for so long. Hosts on machines of their own, with a network file system
-between them, have not been tried.
-"""
 
 Times = dict[tuple[str, Fault], list[float]]
 
@@ -72,7 +41,7 @@ def main() -> None:
     section = _section(times, asked.repeats, asked.lease_seconds)
     print("\n".join(section.lines))
     if asked.write:
-        write_sections(PAGE, PREAMBLE, [_subject(lease_s) for lease_s in LEASES_S], [section])
+        write(section)
 
 
 def _measured(repeats: int, lease_s: float) -> Iterator[tuple[str, Fault, float]]:
@@ -94,11 +63,7 @@ def _section(times: Times, repeats: int, lease_s: float) -> Section:
     ]
     header = ["Of the host's", "It is", "Taken over after [s]", "Median [s]"]
     command = f"python -m benchmarks.takeover --repeats {repeats} --lease-seconds {lease_s:g} --write"
-    return Section(_subject(lease_s), f"Lease {lease_s:g} s", command, ("", *table(header, rows), ""))
-
-
-def _subject(lease_s: float) -> str:
-    return f"lease-{lease_s:g}"
+    return Section(of_lease(lease_s), f"Lease {lease_s:g} s", command, ("", *table(header, rows), ""))
 
 
 if __name__ == "__main__":

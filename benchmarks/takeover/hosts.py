@@ -11,7 +11,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import TypeVar
 
-from sqlalchemy import Engine
+from sqlalchemy import Engine, Select, text
 
 from scl import Address
 from service.demo.addresses import LOOPBACK, free_ports
@@ -34,6 +34,11 @@ Thing = TypeVar("Thing", bound=Hashable)
 DATABASE = "mcc"
 NAMES = ("first", "second")
 END_LIMIT_S = 20.0
+RENEWAL_LIMIT_S = 60.0
+
+WAITS_FOR_US = text(
+    "SELECT count(*) FROM pg_locks WHERE NOT granted AND pg_backend_pid() = ANY (pg_blocking_pids(pid))"
+)
 
 
 class Fault(StrEnum):
@@ -41,6 +46,7 @@ class Fault(StrEnum):
 
     KILLED = "killed"
     FROZEN = "frozen"
+    FROZEN_IN_TRANSACTION = "frozen inside a transaction"
     CUT_OFF = "cut off from the database"
 
 
@@ -76,7 +82,7 @@ class Host:
         match fault:
             case Fault.KILLED:
                 self.kill()
-            case Fault.FROZEN:
+            case Fault.FROZEN | Fault.FROZEN_IN_TRANSACTION:
                 self.signal(signal.SIGSTOP)
             case Fault.CUT_OFF:
                 self.proxy.freeze(self.name, on=True)
@@ -86,7 +92,7 @@ class Host:
         match fault:
             case Fault.KILLED:
                 self.start()
-            case Fault.FROZEN:
+            case Fault.FROZEN | Fault.FROZEN_IN_TRANSACTION:
                 self.signal(signal.SIGCONT)
             case Fault.CUT_OFF:
                 self.proxy.freeze(self.name, on=False)
@@ -104,6 +110,16 @@ class Host:
         assert self.process is not None
         self.process.wait()
         wait_until(lambda: not any(is_alive(one) for one in ending), f"{self.name} to end", END_LIMIT_S)
+
+
+def freeze_inside_a_transaction(engine: Engine, host: Host, row: Select[str]) -> None:
+    """Freeze a host once it waits for a row that is locked here, and let it have the row's lock then."""
+    with engine.connect() as ours:
+        ours.execute(row.with_for_update()).one()
+        host.signal(signal.SIGCONT)
+        wait_until(lambda: ours.scalar(WAITS_FOR_US), f"{host.name} to want a row", RENEWAL_LIMIT_S)
+        host.strike(Fault.FROZEN_IN_TRANSACTION)
+        ours.rollback()
 
 
 def require_once(what: str, expected: Iterable[Thing], found: Mapping[Thing, int]) -> None:

@@ -10,7 +10,7 @@ from itertools import count
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from benchmarks.takeover.hosts import Fault, Host, Site, require_once
+from benchmarks.takeover.hosts import Fault, Host, Site, freeze_inside_a_transaction, require_once
 from core.recordings.comtrade.writer import combined_bytes
 from core.units import NANOSECONDS_PER_HOUR
 from service.recording_store.store import RecordingStore
@@ -25,6 +25,7 @@ START_LIMIT_S = 120.0
 WORK_LIMIT_S = 60.0
 LEASES = 4
 """Others take over within so many leases, and a time in which a busy machine does its work."""
+STOOD_STILL = "this process stood still inside a transaction"
 AT_ONCE = 6
 """Records that are queued together: enough that each runner has one."""
 
@@ -34,14 +35,14 @@ def take_over_times(site: Site, repeats: int) -> Iterator[tuple[Fault, float]]:
 
     Raises AssertionError where a record is lost or diagnosed twice.
     """
-    records = _Records(site)
+    records = Records(site)
     with site.hosts("work") as hosts:
         for fault in Fault:
             for number in range(repeats):
                 yield fault, _take_over(site, records, hosts, hosts[number % len(hosts)], fault)
 
 
-class _Records:
+class Records:
     """Records of running motors, each another, added to the service's store and queued for diagnosis."""
 
     def __init__(self, site: Site) -> None:
@@ -52,9 +53,9 @@ class _Records:
         self.ids: list[str] = []
         self._open: list[str] = []
 
-    def add(self) -> None:
+    def add(self, number_added: int = AT_ONCE) -> None:
         """Queue some more."""
-        for _ in range(AT_ONCE):
+        for _ in range(number_added):
             number = next(self._numbers)
             record = running_record(seconds=0.3, begin_ns=self._begin_ns - number * NANOSECONDS_PER_HOUR)
             stored = self._store.store({"EVENT.CFF": combined_bytes(record, data_format="BINARY")})
@@ -71,10 +72,13 @@ class _Records:
         return not self._open
 
 
-def _take_over(site: Site, records: _Records, hosts: Sequence[Host], lost: Host, fault: Fault) -> float:
-    wait_until(lambda: all(_runner_of(site, host) for host in hosts), "hosts with runners", START_LIMIT_S)
+def _take_over(site: Site, records: Records, hosts: Sequence[Host], lost: Host, fault: Fault) -> float:
+    wait_until(lambda: all(runner_of(site, host) for host in hosts), "hosts with runners", START_LIMIT_S)
     job, recording = _stop_at_work(site, records, lost)
-    lost.strike(fault)
+    if fault is Fault.FROZEN_IN_TRANSACTION:  # its result is about to be stored
+        freeze_inside_a_transaction(site.engine, lost, select(JobRow.id).where(JobRow.id == job))
+    else:
+        lost.strike(fault)
     began_s = time.monotonic()
     if fault is Fault.CUT_OFF:
         os.kill(lost.process_ids[0], signal.SIGCONT)
@@ -88,13 +92,15 @@ def _take_over(site: Site, records: _Records, hosts: Sequence[Host], lost: Host,
         took_s = time.monotonic() - began_s
     finally:
         lost.mend(fault)
-    wait_until(lambda: _runner_of(site, lost) is not None, f"{lost.name} to work again", START_LIMIT_S)
+    wait_until(lambda: runner_of(site, lost) is not None, f"{lost.name} to work again", START_LIMIT_S)
     wait_until(records.are_diagnosed, "the diagnoses of all records", WORK_LIMIT_S)
+    if fault is Fault.FROZEN_IN_TRANSACTION:
+        assert STOOD_STILL in lost.log.read_text(), f"{lost.log}: expected that it tells why it begins anew"
     _require_each_once(site, records, job)
     return took_s
 
 
-def _stop_at_work(site: Site, records: _Records, host: Host) -> tuple[str, str]:
+def _stop_at_work(site: Site, records: Records, host: Host) -> tuple[str, str]:
     """Stop a host's own process while it has a job; return the job and its recording."""
     found: list[tuple[str, str]] = []
 
@@ -112,7 +118,7 @@ def _stopped_at_work(site: Site, host: Host) -> list[tuple[str, str]]:
     """Stop a host's own process and return its jobs; where it has none, it goes on."""
     own = host.process_ids[0]
     os.kill(own, signal.SIGSTOP)
-    runner = _runner_of(site, host)
+    runner = runner_of(site, host)
     if runner is not None:
         with Session(site.engine) as session:
             under_way = select(JobRow.id, JobRow.recording_id).where(
@@ -124,13 +130,13 @@ def _stopped_at_work(site: Site, host: Host) -> list[tuple[str, str]]:
     return []
 
 
-def _runner_of(site: Site, host: Host) -> JobRunnerEntry | None:
+def runner_of(site: Site, host: Host) -> JobRunnerEntry | None:
     """The job runner of a host; None where it has none, or has lost it."""
     own = host.process_ids[0]
     return next((one for one in site.repository.job_runners() if one.process_id == own), None)
 
 
-def _require_each_once(site: Site, records: _Records, taken_over: str) -> None:
+def _require_each_once(site: Site, records: Records, taken_over: str) -> None:
     """Raise AssertionError unless each record has one diagnosis, and the job was begun by two hosts."""
     with Session(site.engine) as session:
         diagnoses = Counter(session.scalars(select(DiagnosisRow.recording_id)))

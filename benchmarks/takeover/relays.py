@@ -7,10 +7,10 @@ from collections.abc import Iterator, Sequence
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from benchmarks.takeover.hosts import Fault, Host, Site, require_once
+from benchmarks.takeover.hosts import Fault, Host, Site, freeze_inside_a_transaction, require_once
 from mms import Client
 from service.plant import Plant
-from service.storage.models import DiagnosisRow, RecordingRow
+from service.storage.models import DiagnosisRow, GatewayRow, RecordingRow
 from testing.service.processes import RELAYS
 from testing.waiting import wait_until
 
@@ -43,7 +43,11 @@ def _take_over(site: Site, plant: Plant, lost: Host, fault: Fault) -> float:
     wait_until(lambda: _stored(site).keys() >= site.plant.records(), "all records", WORK_LIMIT_S)
     relays = _relays_of(site, lost)
     before = site.plant.records()
-    lost.strike(fault)
+    if fault is Fault.FROZEN_IN_TRANSACTION:  # it renews its leases
+        own = select(GatewayRow.id).where(GatewayRow.process_id.in_(lost.process_ids))
+        freeze_inside_a_transaction(site.engine, lost, own)
+    else:
+        lost.strike(fault)
     began_s = time.monotonic()
     try:
         for relay in relays:

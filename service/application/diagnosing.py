@@ -11,6 +11,7 @@ from service.plant import Plant
 from service.process.installation import installation_id
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
+from service.storage.transaction_limits import limits_of
 from service.timing.backoff import Backoff
 
 LONGEST_RETRY_S = 3600.0
@@ -34,6 +35,7 @@ def job_runner(
         database_url=settings.database_url,
         most_observing=max(1, settings.workers - 1),
         alarm_rules=settings.alarms.condition_rules,
+        limits=limits_of(settings),
     )
     return JobRunner(
         repository,

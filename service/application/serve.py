@@ -39,6 +39,7 @@ from service.process.termination import Termination
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect, migrate
 from service.storage.answering import answering
+from service.storage.transaction_limits import limits_of
 from service.web.app import create_site, end_streams
 
 log = structlog.get_logger(__name__)
@@ -120,7 +121,7 @@ def _prepared(settings: Settings, plant: Plant) -> Repository:
     """Open the database and bring it up to date. Raises StorageError."""
     with answering(settings.database_url):
         migrate(settings.database_url)
-        repository = Repository(connect(settings.database_url))
+        repository = Repository(connect(settings.database_url, limits=limits_of(settings)))
         repository.sync_plant(plant, noted_ns=time.time_ns())
         documents = {motor.name: document_of(motor.motor) for motor in plant.motors}
         repository.note_motors(documents, now_ns=time.time_ns())
@@ -142,7 +143,7 @@ def collect(settings: Settings) -> None:
     plant = checked_plant(settings)
     require_writable(settings.data_directory)
     with exclusive(settings.data_directory / "service.lock", wait=False):
-        repository = Repository(connect(settings.database_url))
+        repository = Repository(connect(settings.database_url, limits=limits_of(settings)))
         with answering(settings.database_url):
             repository.check()
         with running([GatewayProcesses(settings, plant, repository)]):

@@ -20,6 +20,7 @@ from service.storage import Repository, connect
 from service.storage.answering import answering
 from service.storage.database_url import parsed_url
 from service.storage.migrations import require_current_tables
+from service.storage.transaction_limits import limits_of
 from service.timing.database_silence import database_trouble
 
 log = structlog.get_logger(__name__)
@@ -51,7 +52,7 @@ def work(settings: Settings) -> None:
         require_current_tables(settings.database_url)
     require_writable(settings.data_directory)
     with exclusive(settings.data_directory / "service.lock", wait=False):
-        repository = Repository(connect(settings.database_url))
+        repository = Repository(connect(settings.database_url, limits=limits_of(settings)))
         require_same_motors(repository, motors)
         store = _shared_store(settings, repository)
         jobs = job_runner(settings, plant, repository, store, is_ending=end.is_set)

@@ -24,7 +24,7 @@ from service.storage.partitions import has_partitions, make, partitions, waiting
 def copy_postgresql(url: str, folder: Path) -> DatabaseCopy:
     """Copy a database into a folder of a back-up while others write to it. Raises SQLAlchemyError."""
     folder.mkdir(mode=PRIVATE_FOLDER)
-    engine = connect(url)
+    engine = connect(url, limits=None)
     try:
         with engine.connect().execution_options(isolation_level="REPEATABLE READ") as connection:
             connection.execute(text("SET TRANSACTION READ ONLY"))
@@ -60,7 +60,7 @@ class PostgresqlPlace:
     def restore(self, backup: Verified) -> None:
         """Replace all tables in one transaction."""
         manifest = backup.manifest
-        engine = connect(self._url)
+        engine = connect(self._url, limits=None)
         try:
             with engine.begin() as connection:
                 self._require_alone(connection)

@@ -20,6 +20,7 @@ from service.condition.errors import RecordFoldError
 from service.condition.worker import FoldTask, ObserveTask, fold_motor, observe_recordings
 from service.recording_store.store import RecordingStore
 from service.storage.repository import Repository
+from service.storage.transaction_limits import USUAL, TransactionLimits
 from service.timing.backoff import Backoff
 from service.timing.database_silence import does_not_answer
 
@@ -99,15 +100,17 @@ class ConditionWork:
         database_url: str,
         most_observing: int = 1,
         alarm_rules: ConditionRules = AT_ONCE,
+        limits: TransactionLimits = USUAL,
     ) -> None:
         """most_observing: so many tasks may observe at a time; the other workers are free for what is new.
 
-        alarm_rules: when a motor's condition makes an alarm.
+        alarm_rules: when a motor's condition makes an alarm. limits: of the workers' transactions.
         """
         self._alarm_rules = alarm_rules
         self._repository = repository
         self._motors = motors
         self._database_url = database_url
+        self._limits = limits
         self._store = store
         self._most_observing = most_observing
         self._under_way: dict[str, ConditionTask] = {}
@@ -186,7 +189,9 @@ class ConditionWork:
         self._folded_s[motor] = time.monotonic()
         # They may be many, and are of use only where the motor is about to be set aside.
         marks = self._repository.fold_marks(motor) if motor in self._trouble else ()
-        task = FoldTask(self._database_url, self._motors[motor], alarm_rules=self._alarm_rules)
+        task = FoldTask(
+            self._database_url, self._motors[motor], alarm_rules=self._alarm_rules, limits=self._limits
+        )
         return ConditionTask(motor, fold_motor, task, marks)
 
     def _next_judged_again(self) -> ConditionTask | None:
@@ -223,7 +228,9 @@ class ConditionWork:
             failures = self._trouble[motor].failures if motor in self._trouble else 0
             recordings = self._repository.recordings_to_observe(motor, 1 if failures else RECORDINGS_A_TASK)
             if recordings:
-                argument = ObserveTask(self._database_url, self._store, self._motors[motor], recordings)
+                argument = ObserveTask(
+                    self._database_url, self._store, self._motors[motor], recordings, self._limits
+                )
                 return ConditionTask(motor, observe_recordings, argument)
         return None
 

@@ -21,6 +21,7 @@ from service.recording_store.store import RecordingStore, RecordingStoreError
 from service.storage.engine import connect
 from service.storage.records import ToObserve
 from service.storage.repository import Repository
+from service.storage.transaction_limits import USUAL, TransactionLimits
 
 log = structlog.get_logger(__name__)
 
@@ -42,6 +43,7 @@ class FoldTask:
     motor: Motor
     round_s: float = ROUND_S
     alarm_rules: ConditionRules = AT_ONCE
+    limits: TransactionLimits = USUAL
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +54,7 @@ class ObserveTask:
     store: RecordingStore
     motor: Motor
     recordings: Sequence[ToObserve]
+    limits: TransactionLimits = USUAL
 
 
 def fold_motor(task: FoldTask) -> int:
@@ -59,7 +62,8 @@ def fold_motor(task: FoldTask) -> int:
 
     Raises NotFoundError, RecordFoldError, SQLAlchemyError.
     """
-    return fold_due(_repository(task.database_url), task.motor, task.round_s, alarm_rules=task.alarm_rules)
+    repository = _repository(task.database_url, task.limits)
+    return fold_due(repository, task.motor, task.round_s, alarm_rules=task.alarm_rules)
 
 
 def fold_due(
@@ -95,7 +99,8 @@ def observe_recordings(task: ObserveTask) -> int:
 
     Raises SQLAlchemyError.
     """
-    return _repository(task.database_url).add_observations(list(_observed(task)))
+    repository = _repository(task.database_url, task.limits)
+    return repository.add_observations(list(_observed(task)))
 
 
 def _observed(task: ObserveTask) -> Iterator[tuple[str, Observation | None]]:
@@ -120,5 +125,5 @@ def _observed(task: ObserveTask) -> Iterator[tuple[str, Observation | None]]:
 
 
 @lru_cache(maxsize=4)
-def _repository(database_url: str) -> Repository:
-    return Repository(connect(database_url))
+def _repository(database_url: str, limits: TransactionLimits) -> Repository:
+    return Repository(connect(database_url, limits=limits))

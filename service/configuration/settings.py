@@ -97,6 +97,8 @@ class Settings(BaseSettings):
     relays: dict[str, RelayAccess] = Field(default_factory=dict)
     relays_per_gateway: int = Field(default=250, ge=1, le=1000)
     lease_s: float = Field(default=30.0, ge=1, le=600)
+    transaction_idle_s: float | None = Field(default=None, ge=0.1, le=600)
+    lock_wait_s: float | None = Field(default=None, ge=0.1, le=600)
     events_directory: str = "EVENTS"
     connect_timeout_s: float = Field(default=5.0, ge=0.01, le=600)
     request_timeout_s: float = Field(default=5.0, ge=0.01, le=600)
@@ -119,6 +121,14 @@ class Settings(BaseSettings):
         if "tls_certificate" in info.data and (key is None) != (info.data["tls_certificate"] is None):
             raise ValueError("tls_certificate and tls_key together, or neither")
         return key
+
+    @field_validator("transaction_idle_s", "lock_wait_s")
+    @classmethod
+    def _within_a_lease(cls, value: float | None, info: ValidationInfo) -> float | None:
+        lease_s = info.data.get("lease_s")
+        if value is not None and lease_s is not None and value >= lease_s:
+            raise ValueError(f"less than lease_s, which is {lease_s:g}")
+        return value
 
     @field_validator("reports")
     @classmethod

@@ -124,11 +124,11 @@ class JobRunner:
 
     def _step(self) -> None:
         """Write results back and claim what workers are free for. Raises SQLAlchemyError: try again."""
-        if boot_time_s() >= self._renew_at_s:
-            self._renew()
+        self._renew_when_due()
         while self._results:
             self._settle(*self._results[0])
             self._results.popleft()
+            self._renew_when_due()  # each may have waited for a lock
         while self._conditions is not None and self._condition_results:
             self._conditions.ended(*self._condition_results.popleft())
         if self._pool.has_ended():
@@ -187,6 +187,10 @@ class JobRunner:
             max_attempts=self._limits.attempts,
             place=JobRunnerPlace(socket.gethostname(), os.getpid(), self._limits.workers),
         )
+
+    def _renew_when_due(self) -> None:
+        if boot_time_s() >= self._renew_at_s:
+            self._renew()
 
     def _renew(self) -> None:
         """Renew the lease, and take the jobs from runners that have not renewed theirs."""

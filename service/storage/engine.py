@@ -12,6 +12,8 @@ from sqlalchemy.pool import ConnectionPoolEntry
 
 from service.storage.database_url import POSTGRESQL, parsed_url
 from service.storage.errors import StorageError
+from service.storage.postgresql_sessions import parameters, tell_of_ends
+from service.storage.transaction_limits import USUAL, TransactionLimits
 
 BUSY_TIMEOUT_S = 30.0
 """A transaction waits at most this long while others write to an SQLite file."""
@@ -29,26 +31,14 @@ WAITS_S = "statorwatch_busy_timeout_s"
 """This execution option says how long a writing connection waits for its turn [s]."""
 
 
-POSTGRESQL_PARAMETERS = {
-    # Without it, texts of a database of no encoding (SQL_ASCII, where a server has no locale) are bytes.
-    "client_encoding": "utf8",
-    "connect_timeout": "10",
-    "keepalives_idle": "10",
-    "keepalives_interval": "5",
-    "keepalives_count": "3",
-    "tcp_user_timeout": "25000",
-}
-"""Parameters of libpq, where the URL does not say others.
-
-A server that is cut off without a word is given up after 25 s, not after hours. Times are in s, the last
-one is in ms."""
-
-
-def connect(url: str, *, busy_timeout_s: float = BUSY_TIMEOUT_S) -> Engine:
+def connect(
+    url: str, *, busy_timeout_s: float = BUSY_TIMEOUT_S, limits: TransactionLimits | None = USUAL
+) -> Engine:
     """Return the engine for an SQLAlchemy URL (SQLite or PostgreSQL).
 
-    busy_timeout_s: how long a transaction waits while others write to an SQLite file. Raises StorageError for
-    what is no URL.
+    busy_timeout_s: how long a transaction waits while others write to an SQLite file. limits: of transactions
+    on PostgreSQL; None for work that nobody else does at the same time, which may take as long as it does.
+    Raises StorageError for what is no URL.
     """
     parsed = parsed_url(url)
     # A figure that is not a number has no place in a JSON document; better to fail here than in a reader.
@@ -57,8 +47,8 @@ def connect(url: str, *, busy_timeout_s: float = BUSY_TIMEOUT_S) -> Engine:
         if parsed.drivername == "postgresql":
             parsed = parsed.set(drivername=POSTGRESQL)
         try:
-            return create_engine(
-                parsed.set(query=POSTGRESQL_PARAMETERS | dict(parsed.query)),
+            engine = create_engine(
+                parsed.set(query=parameters(parsed.query, limits)),
                 json_serializer=serializer,
                 pool_pre_ping=True,
             )
@@ -67,6 +57,8 @@ def connect(url: str, *, busy_timeout_s: float = BUSY_TIMEOUT_S) -> Engine:
                 f"database_url: {parsed.drivername} needs the Python package {error.name!r}, which is not "
                 "installed beside this service: pip install it there"
             ) from error
+        tell_of_ends(engine)
+        return engine
     if parsed.database in (None, "", ":memory:"):
         raise StorageError(
             "database_url: expected an SQLite file, found a database in memory (two processes use it)"

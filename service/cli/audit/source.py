@@ -55,7 +55,7 @@ def _start_of(file: Path) -> Anchor:
 def _of_database(config: Path, first: int) -> Iterator[Trail]:
     settings = Settings.load(config)
     require_current_tables(settings.database_url)
-    engine = connect(settings.database_url)
+    engine = connect(settings.database_url, limits=None)  # whoever reads the trail may pause
     try:
         with Repository(engine).audit_trail() as trail:
             yield Trail(partial(trail.entries, first=first), START, trail.head)

@@ -20,6 +20,7 @@ from service.process.single_instance import AlreadyRunningError
 from service.storage import Repository, StorageError, connect
 from service.storage.migrations import require_current_tables
 from service.storage.records import Job
+from service.storage.transaction_limits import limits_of
 
 if TYPE_CHECKING:
     from service.application.rediagnosis import Progress as Done
@@ -58,7 +59,7 @@ def rediagnose_archive(
         require_current_tables(settings.database_url)
         names = list(dict.fromkeys(motors)) or [motor.name for motor in plant.motors]
         wanted = Wanted(names, method, model, made_before_ns)
-        engine = connect(settings.database_url)
+        engine = connect(settings.database_url, limits=limits_of(settings))
         try:
             with without_logs(), _workers(settings, scheduler, processes) as workers, _bar() as show:
                 done = rediagnose(

@@ -25,6 +25,7 @@ from service.process.single_instance import exclusive
 from service.process.termination import leave_to_parent
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect
+from service.storage.transaction_limits import limits_of
 
 log = structlog.get_logger(__name__)
 
@@ -73,7 +74,7 @@ def _collect(settings: Settings, number: int, stop: Event) -> list[str]:
     gateway = Gateway(
         GatewayIdentity(name, socket.gethostname(), os.getpid()),
         read_plant(settings),
-        Repository(connect(settings.database_url)),
+        Repository(connect(settings.database_url, limits=limits_of(settings))),
         store,
         settings,
         visit_marks=marks,

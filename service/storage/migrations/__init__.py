@@ -24,7 +24,8 @@ def migrate(url: str, revision: str = "head") -> None:
     Do nothing where they are up to date. Raises StorageError (no such URL, a newer version's database, one
     that cannot hold every text), sqlalchemy.exc.SQLAlchemyError (the database does not answer).
     """
-    engine = connect(url)
+    # It may take minutes, and whoever starts at the same time waits for it.
+    engine = connect(url, limits=None)
     try:
         with engine.begin() as connection:
             _require_unicode(connection)

@@ -119,6 +119,13 @@ def test_everything_that_is_wrong_is_told_at_once(tmp_path: Path, monkeypatch: p
     )
 
 
+def test_limits_of_transactions_are_shorter_than_the_lease() -> None:
+    with pytest.raises(SettingsError) as failure:
+        Settings.load(None, {"lease_s": 5.0, "transaction_idle_s": 5.0, "lock_wait_s": 4.9})
+    (line,) = str(failure.value).splitlines()
+    assert "transaction_idle_s: expected less than lease_s, which is 5, found 5" in line
+
+
 def test_a_password_in_the_url_is_not_shown() -> None:
     settings = Settings(database_url="postgresql+psycopg://mcc:secret@db.example/mcc")
     assert "secret" not in repr(settings)
