@@ -6,8 +6,7 @@ import zipfile
 from collections.abc import Iterator
 
 from core.time_stamps import SECONDS_END, rfc3339
-from service.recording_store.recording import StoredRecording
-from service.recording_store.store import RecordingStore
+from service.recording_store.store import StoredRecording
 from service.storage.records import RecordingEntry
 
 CHUNK_BYTES = 1 << 16
@@ -26,12 +25,12 @@ def file_stem(recording: RecordingEntry) -> str:
     return f"{_UNSAFE.sub('_', recording.motor)}_{time}Z"
 
 
-def zipped(store: RecordingStore, stored: StoredRecording) -> Iterator[bytes]:
-    """Return the archive piece by piece. Raises RecordingStoreError, OSError."""
+def zipped(stored: StoredRecording) -> Iterator[bytes]:
+    """Return the archive piece by piece."""
     sink = _Sink()
-    with store.opened(stored.digest) as entry, zipfile.ZipFile(sink, "w", zipfile.ZIP_DEFLATED) as archive:
+    with zipfile.ZipFile(sink, "w", zipfile.ZIP_DEFLATED) as archive:
         for file in stored.files:
-            path = entry.with_name(file.name)
+            path = stored.directory / file.name
             about = zipfile.ZipInfo.from_file(path, arcname=file.name)
             about.compress_type = zipfile.ZIP_DEFLATED
             with path.open("rb") as source, archive.open(about, "w") as packed:

@@ -15,8 +15,7 @@ import pytest
 from sqlalchemy import Engine
 from structlog.testing import capture_logs
 
-from service.recording_store.folder import FolderStore
-from service.recording_store.recording import LocalFile
+from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect
 from service.storage.records import RemoteRecord
 from service.storage.states import AlarmKind, JobState, RecordingRequestState, RecordingState
@@ -37,7 +36,7 @@ LEASE_S = 1.5
 
 
 def test_every_recording_comes_to_its_end_whatever_the_workers_do(
-    repository: Repository, store: FolderStore
+    repository: Repository, store: RecordingStore
 ) -> None:
     """One run for all of it: worker processes take a second to start."""
     told = ("fine", "reject", "raise", "die", "die once", "broken bars")
@@ -77,7 +76,7 @@ def test_every_recording_comes_to_its_end_whatever_the_workers_do(
 
 @pytest.mark.parametrize("database_url", ["sqlite", "postgresql"], indirect=True)
 def test_whatever_a_result_holds_its_job_alone_fails(
-    repository: Repository, store: FolderStore, engine: Engine
+    repository: Repository, store: RecordingStore, engine: Engine
 ) -> None:
     ids = {
         what: add(repository, store, what)
@@ -116,7 +115,7 @@ def test_whatever_a_result_holds_its_job_alone_fails(
 
 
 @pytest.mark.parametrize("database_url", ["sqlite", "postgresql"], indirect=True)
-def test_a_mass_of_repetitions_delays_no_fresh_record(repository: Repository, store: FolderStore) -> None:
+def test_a_mass_of_repetitions_delays_no_fresh_record(repository: Repository, store: RecordingStore) -> None:
     old = add(repository, store, "slow")
     with running(repository, store, replace(LIMITS, workers=1)):
         wait_until(lambda: ended(repository, old), within_s=60)
@@ -144,21 +143,21 @@ def started(repository: Repository, recording_id: str) -> list[tuple[str, int]]:
     return [(job.id, job.started_ns) for job in jobs if job.started_ns is not None]
 
 
-class LostWhileClaiming(FolderStore):
+class LostWhileClaiming(RecordingStore):
     """A store whose folder goes as the first recording is looked up, which is after the runner has looked."""
 
     was_lost = False
 
-    def source(self, digest: str) -> LocalFile:
+    def entry(self, digest: str) -> Path:
         if not self.was_lost:
             self.was_lost = True
             unmount(self.root)
-        return super().source(digest)
+        return super().entry(digest)
 
 
 @pytest.mark.parametrize("told", ["fine", *UNMOUNTING])
 def test_no_recording_is_at_fault_where_the_folder_of_all_is_gone(
-    repository: Repository, store: FolderStore, told: str
+    repository: Repository, store: RecordingStore, told: str
 ) -> None:
     recording_id = add(repository, store, told)
     theirs = LostWhileClaiming(store.root) if told == "fine" else store
@@ -171,10 +170,10 @@ def test_no_recording_is_at_fault_where_the_folder_of_all_is_gone(
         wait_until(lambda: ended(repository, recording_id))
     assert repository.recording(recording_id).state is RecordingState.DIAGNOSED
     warnings = [one["event"] for one in said if one["log_level"] == "warning"]
-    assert warnings == ["jobs wait for the recordings"]
+    assert warnings == ["jobs wait for the folder of the recordings"]
 
 
-def test_a_job_that_takes_too_long_is_given_up(repository: Repository, store: FolderStore) -> None:
+def test_a_job_that_takes_too_long_is_given_up(repository: Repository, store: RecordingStore) -> None:
     report = repository.request_recording("PUMP-A1", now_ns=time.time_ns())
     stored = store.store({"E.CFF": b"hang"})
     repository.add_recording(stored, motor="PUMP-A1", recording_request_id=report.id, now_ns=time.time_ns())
@@ -186,7 +185,7 @@ def test_a_job_that_takes_too_long_is_given_up(repository: Repository, store: Fo
     )
 
 
-def test_a_clean_stop_gives_running_jobs_back(repository: Repository, store: FolderStore) -> None:
+def test_a_clean_stop_gives_running_jobs_back(repository: Repository, store: RecordingStore) -> None:
     recording_id = add(repository, store, "hang once")
     with running(repository, store):
         wait_until(lambda: worker_of(store))
@@ -198,14 +197,14 @@ def test_a_clean_stop_gives_running_jobs_back(repository: Repository, store: Fol
 
 
 def serve_and_hang(url: str, root: Path, installation: str = "ours") -> None:
-    store = FolderStore(root)
+    store = RecordingStore(root)
     with running(
         Repository(connect(url)), store, replace(LIMITS, lease_s=LEASE_S), installation=installation
     ):
         time.sleep(600)
 
 
-def worker_of(store: FolderStore) -> int | None:
+def worker_of(store: RecordingStore) -> int | None:
     """Process id of the worker that hangs."""
     for path in store.root.rglob("*.tried"):
         text = path.read_text()
@@ -223,7 +222,7 @@ def alive(process_id: int) -> bool:
 
 
 def test_a_killed_service_loses_no_job_and_leaves_no_worker(
-    repository: Repository, store: FolderStore, database_url: str
+    repository: Repository, store: RecordingStore, database_url: str
 ) -> None:
     recording_id = add(repository, store, "hang once")
     context = multiprocessing.get_context("spawn")
@@ -247,7 +246,7 @@ def test_a_killed_service_loses_no_job_and_leaves_no_worker(
 
 @pytest.mark.parametrize("database_url", ["sqlite", "postgresql"], indirect=True)
 def test_two_services_share_the_jobs_and_one_takes_over_from_a_killed_one(
-    repository: Repository, store: FolderStore, database_url: str
+    repository: Repository, store: RecordingStore, database_url: str
 ) -> None:
     recording_id = add(repository, store, "hang once")
     context = multiprocessing.get_context("spawn")
@@ -270,7 +269,7 @@ def test_two_services_share_the_jobs_and_one_takes_over_from_a_killed_one(
 
 
 def test_the_runner_is_not_ready_before_its_workers_are(
-    repository: Repository, store: FolderStore, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    repository: Repository, store: RecordingStore, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     go = tmp_path / "go"
     monkeypatch.setenv(GO, str(go))
@@ -283,7 +282,7 @@ def test_the_runner_is_not_ready_before_its_workers_are(
         wait_until(lambda: ended(repository, recording_id))
 
 
-def test_workers_that_cannot_start_show_in_the_problem(repository: Repository, store: FolderStore) -> None:
+def test_workers_that_cannot_start_show_in_the_problem(repository: Repository, store: RecordingStore) -> None:
     recording_id = add(repository, store, "fine")
     with running(repository, store, prepare_worker=fail_to_start) as runner:
         wait_until(lambda: "the worker processes ended" in (runner.problem() or ""))
@@ -311,7 +310,7 @@ NO_PROCESS = f"cannot be started: [Errno {errno.EAGAIN}]"
 
 
 def test_a_start_that_gets_no_process_is_told_and_tried_again(
-    repository: Repository, store: FolderStore, exhausted: Event
+    repository: Repository, store: RecordingStore, exhausted: Event
 ) -> None:
     recording_id = add(repository, store, "fine")
     exhausted.set()
@@ -324,7 +323,7 @@ def test_a_start_that_gets_no_process_is_told_and_tried_again(
 
 
 def test_workers_that_die_while_the_system_has_no_process_to_give_are_replaced_later(
-    repository: Repository, store: FolderStore, exhausted: Event
+    repository: Repository, store: RecordingStore, exhausted: Event
 ) -> None:
     with running(repository, store) as runner:
         wait_until(lambda: runner.problem() is None)
@@ -339,7 +338,7 @@ def test_workers_that_die_while_the_system_has_no_process_to_give_are_replaced_l
     assert repository.recording(recording_id).state is RecordingState.DIAGNOSED
 
 
-def test_workers_that_die_idle_are_replaced(repository: Repository, store: FolderStore) -> None:
+def test_workers_that_die_idle_are_replaced(repository: Repository, store: RecordingStore) -> None:
     with running(repository, store) as runner:
         wait_until(lambda: runner.problem() is None)
         for worker in idle_workers():
