@@ -1,8 +1,8 @@
 """The way of a newcomer through the demo: python -m benchmarks.web.walk [--pictures DIR].
 
 It starts `mcc demo`, opens the link that the demo prints first, and goes to what has to be done, on a desktop
-and, when the month is over, with the next link on a phone. With --pictures it then takes the pictures of the
-documentation.
+and, when the month is over, with the next link on a phone. With --pictures it takes the pictures of the
+documentation in between.
 """
 
 import argparse
@@ -15,7 +15,7 @@ from tempfile import TemporaryDirectory
 from benchmarks.reporting import table
 from benchmarks.web.pictures import take_pictures
 from testing.web.chromium import INSTALL, chromium_path, running_browser
-from testing.web.demo_walk import PAGE, Walk, find_what_to_do, follow, running_demo
+from testing.web.demo_walk import PAGE, Walk, find_what_to_do, follow, on_a_phone, running_demo
 from testing.web.site import DESKTOP, PHONE
 
 
@@ -39,13 +39,14 @@ def main() -> None:
         find_what_to_do(page, desktop)
         _print("Desktop", desktop)
         link = demo.next_link()  # the demo prints it when the month is over
+        if arguments.pictures is not None:  # before the phone's walk takes notice of the alarm that they show
+            with on_a_phone(browser, page) as small:
+                take_pictures(page, small, arguments.pictures)
         phone = Walk()
         small = follow(browser, link, PHONE)
         phone.step("the link opens the first page, logged in", clicks=1)
         find_what_to_do(small, phone)
         _print("Phone, 360 px", phone)
-        if arguments.pictures is not None:
-            take_pictures(page, small, arguments.pictures)
 
 
 def _print(title: str, walk: Walk) -> None:

@@ -1,4 +1,4 @@
-"""Times and commands within sentences of the service, as pages write them."""
+"""Times, days and commands within sentences of the service, as pages write them."""
 
 import re
 from datetime import datetime
@@ -6,14 +6,16 @@ from typing import Final
 
 from markupsafe import Markup, escape
 
-MARK: Final = re.compile(r"`(?P<code>[^`\n]+)`|\b(?P<time>\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ)")
+MARK: Final = re.compile(
+    r"`(?P<code>[^`\n]+)`|\b(?P<time>\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ)|\b(?P<day>\d{4}-\d\d-\d\d)\b"
+)
 """Fractions of a second are left as they are: whoever tells them compares clocks."""
 
 
 def with_marks(text: str) -> Markup:
     """Return a text with its times in the zone of who looks, and what stands between backquotes as code.
 
-    All the rest is text, whoever has written it.
+    A day stays on one line. All the rest is text, whoever has written it.
     """
     parts: list[Markup] = []
     end = 0
@@ -26,6 +28,8 @@ def with_marks(text: str) -> Markup:
 def _marked(found: re.Match[str]) -> Markup:
     if found["code"] is not None:
         return Markup("<code>{}</code>").format(found["code"])
+    if found["day"] is not None:
+        return Markup('<span class="nowrap">{}</span>').format(found["day"])
     try:
         words = f"{datetime.fromisoformat(found['time']):%Y-%m-%d %H:%M:%S} UTC"
     except ValueError:  # it looks like a time, and is none

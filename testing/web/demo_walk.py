@@ -11,7 +11,7 @@ from urllib.parse import urlsplit
 
 from playwright.sync_api import Browser
 
-from testing.web.site import Screen
+from testing.web.site import PHONE, Screen
 from testing.web.watched_page import WatchedPage
 
 PAGE = "page: "
@@ -96,6 +96,19 @@ def follow(browser: Browser, link: str, screen: Screen, *, dark: bool = False) -
     page.page.goto(link)
     page.page.get_by_role("heading", level=1, name="Fleet").wait_for(timeout=LIMIT_MS)
     return page
+
+
+@contextmanager
+def on_a_phone(browser: Browser, page: WatchedPage) -> Iterator[WatchedPage]:
+    """A page on a phone with the login of another page."""
+    width, height = PHONE
+    with browser.new_context(
+        viewport={"width": width, "height": height},
+        has_touch=True,
+        locale="en-GB",
+        storage_state=page.page.context.storage_state(),
+    ) as window:
+        yield WatchedPage(window.new_page(), page.url)
 
 
 def find_what_to_do(page: WatchedPage, walk: Walk) -> str:

@@ -22,6 +22,13 @@ def test_a_setting_or_command_is_code_without_its_quotes() -> None:
     assert with_marks("too large (`max_file_bytes`)") == "too large (<code>max_file_bytes</code>)"
 
 
+def test_a_day_stays_on_one_line() -> None:
+    marked = with_marks("on 2026-12-03 (2026-11-28 to 2026-12-20)")
+    spans = html.fragment_fromstring(marked, create_parent="p").findall("span")
+    assert [one.text for one in spans] == ["2026-12-03", "2026-11-28", "2026-12-20"]
+    assert {one.get("class") for one in spans} == {"nowrap"}
+
+
 @pytest.mark.parametrize(
     "text",
     [
@@ -35,7 +42,7 @@ def test_a_setting_or_command_is_code_without_its_quotes() -> None:
 )
 def test_all_else_is_text(text: str) -> None:
     marked = html.fragment_fromstring(with_marks(text), create_parent="p")
-    assert {one.tag for one in marked.iterdescendants()} <= {"code", "time"}
+    assert {one.tag for one in marked.iterdescendants()} <= {"code", "time", "span"}
     assert HOSTILE not in with_marks(text)
     if "time" not in {one.tag for one in marked}:
         assert marked.text_content().replace("`", "") == text.replace("`", "")

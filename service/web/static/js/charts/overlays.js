@@ -33,8 +33,12 @@ export function limitsAndMarks(plot, description, markers, theme) {
     // Labels that would lie over one another are left to the list beneath the chart.
     if (x < rightmost || x < box.left || x > box.left + box.width) continue;
     ctx.textAlign = "left";
+    const width = ctx.measureText(mark.label).width;
+    ctx.fillStyle = theme.of("surface"); // a ground: the label may lie over lines of the chart
+    ctx.fillRect(x + ratio, box.top, width + 4 * ratio, 1.4 * LETTERING * ratio);
+    ctx.fillStyle = theme.of(mark.tone);
     ctx.fillText(mark.label, x + 3 * ratio, box.top + LETTERING * ratio);
-    rightmost = x + ctx.measureText(mark.label).width + 6 * ratio;
+    rightmost = x + width + 6 * ratio;
   }
   markers.forEach((at, number) => {
     const x = plot.valToPos(at, "x", true);
