@@ -153,7 +153,7 @@ def test_a_long_recording_is_seen_whole_and_to_the_sample(quiet: tuple[Site, lis
     page.goto(f"/recordings/{ids[2]}")
     assert "60000 samples at 10000 Hz" in page.page.locator("section[aria-labelledby=waveforms]").inner_text()
     # The first paint needs nothing but the page itself, and is told for the benchmark.
-    page.page.wait_for_function("performance.getEntriesByName('charts: first paint').length === 1")
+    page.page.wait_for_function("() => performance.getEntriesByName('charts: first paint').length === 1")
     drawn = page.page.locator(f"{chart(page.page, 'voltages')} .u-over")
     drawn.scroll_into_view_if_needed()
     box = drawn.bounding_box()
