@@ -4,7 +4,7 @@ import asyncio
 import queue
 import tempfile
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -132,10 +132,11 @@ class _Note:
         self._requests: dict[bytes, Element] = {}
 
     async def relay(self, client: asyncio.StreamReader, to_client: asyncio.StreamWriter) -> None:
-        server, to_server = await asyncio.open_connection(LOOPBACK, self._target)
-        await asyncio.gather(
-            self._pass(client, to_server, self._asked), self._pass(server, to_client, self._told)
-        )
+        with closing(to_client):
+            server, to_server = await asyncio.open_connection(LOOPBACK, self._target)
+            await asyncio.gather(
+                self._pass(client, to_server, self._asked), self._pass(server, to_client, self._told)
+            )
 
     async def _pass(
         self,

@@ -19,6 +19,7 @@ from service.storage.models import (
     StandingAlarmCountRow,
     StateCountRow,
 )
+from service.storage.transaction_limits import TransactionLimits
 from testing.not_installed import not_installed
 from testing.service.job_runner import register_runner
 from testing.service.plants import two_motor_plant
@@ -64,9 +65,13 @@ def postgresql_url(postgresql: PostgresServer) -> Iterator[str]:
         yield url
 
 
+PATIENT = TransactionLimits(idle_s=600.0, lock_wait_s=60.0)
+"""A test's process may stand still on a busy machine; the limits have tests of their own."""
+
+
 @pytest.fixture
 def engine(database_url: str) -> Iterator[Engine]:
-    engine = connect(database_url)
+    engine = connect(database_url, limits=PATIENT)
     yield engine
     engine.dispose()
 

@@ -49,7 +49,7 @@ from service.storage.records.diagnoses import (
     TrendPoint,
     interval_of,
 )
-from service.storage.records.fleet import CallingAlarms, FleetMotor
+from service.storage.records.fleet import CallingAlarms, FleetMotor, StandingRotor
 from service.storage.records.health import MotorHealth, RecordedStarts
 from service.storage.records.measurements import ImportedLoad, Measurement, Sample
 from service.storage.records.notifications import (
@@ -171,6 +171,7 @@ __all__ = [
     "SeriesEnd",
     "SeriesHistory",
     "SiteEntry",
+    "StandingRotor",
     "StartEntry",
     "SupplyEntry",
     "ToObserve",

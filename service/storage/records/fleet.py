@@ -21,6 +21,14 @@ class CallingAlarms:
 
 
 @dataclass(frozen=True, slots=True)
+class StandingRotor:
+    """A rotor that somebody has to look after. since_ns: the first record that says so, or None."""
+
+    state: RotorState
+    since_ns: int | None
+
+
+@dataclass(frozen=True, slots=True)
 class FleetMotor:
     """What an overview tells of a motor.
 
@@ -34,4 +42,4 @@ class FleetMotor:
     link_changed_ns: int | None
     figures: LatestFigures | None
     alarms: CallingAlarms | None
-    rotor: RotorState | None = None
+    rotor: StandingRotor | None = None

@@ -41,6 +41,7 @@ class FleetRow:
     latest record.  reference: levels between which no change would be seen.  advice: empty where nothing is
     to be done.  doubt: why a healthy motor may not be; empty where nothing speaks against it.
     version: of its condition.  rotor: watch or fault; None where nothing is wrong, or known.
+    rotor_since_ns: the first record that shows the rotor so.
     """
 
     name: str
@@ -69,6 +70,7 @@ class FleetRow:
     reference: Interval | None
     version: int
     rotor: RotorState | None
+    rotor_since_ns: int | None
 
     @property
     def all_states(self) -> tuple[FleetState, ...]:
@@ -126,6 +128,7 @@ def digest(*told: object) -> str:
 def row_of(motor: FleetMotor, now_ns: int, stale_after_days: float | None) -> FleetRow:
     """Return what the fleet shows of a motor now. stale_after_days: what the settings say of all motors."""
     entry, figures = motor.condition, motor.figures
+    rotor = None if motor.rotor is None else motor.rotor.state
     oldest_ns = stale_after_ns(motor.motor.schedule, stale_after_days)
     condition = condition_document(entry, now_ns, oldest_ns, source=motor.motor.parameters_source)
     states = states_of(entry, now_ns, oldest_ns)
@@ -153,12 +156,13 @@ def row_of(motor: FleetMotor, now_ns: int, stale_after_days: float | None) -> Fl
         limit=condition.forecast.limit,
         as_of_ns=entry.as_of_ns,
         stood_ns=entry.stood_ns,
-        advice=_advice(condition, states[0], why, motor.motor.parameters_source) or _of_rotor(motor.rotor),
+        advice=_advice(condition, states[0], why, motor.motor.parameters_source) or _of_rotor(rotor),
         doubt=doubt(condition, None if figures is None else figures.verdict),
         alarms=motor.alarms,
         reference=_reference(condition),
         version=entry.version,
-        rotor=motor.rotor,
+        rotor=rotor,
+        rotor_since_ns=None if motor.rotor is None else motor.rotor.since_ns,
     )
 
 

@@ -16,6 +16,9 @@ MB = 1 << 20
 TIMES_FILE, BESIDE = 10, 3 * MB
 """What is allowed is 64 MB; files too small to show what they cost would hide behind it."""
 
+ALLOWED_CPU_S = 4.0
+"""The slowest takes half a second on a quiet machine; what grows with the square of the size, minutes."""
+
 
 @pytest.fixture(scope="module")
 def minute(tmp_path_factory: pytest.TempPathFactory) -> Path:
@@ -108,6 +111,6 @@ def test_costly_files(tmp_path: Path, files: dict[str, bytes], lenient: bool) ->
 
     begun = time.process_time()
     attempt()
-    assert time.process_time() - begun < 1.0
+    assert time.process_time() - begun < ALLOWED_CPU_S
     size = sum(map(len, files.values()))
     assert peak_bytes(attempt) <= TIMES_FILE * size + BESIDE

@@ -27,6 +27,11 @@ LIMITS = JobLimits(workers=1, job_timeout_s=60.0, attempts=2, backoff=Backoff(0.
 MODEL = "shorted-winding"
 RECORDS = 12
 
+PATIENCE_S = 180.0
+"""Of a busy machine: each command starts several processes, which load compiled models."""
+
+pytestmark = pytest.mark.timeout(3 * PATIENCE_S)
+
 
 @pytest.fixture
 def archive(tmp_path: Path) -> Iterator[Archive]:
@@ -44,7 +49,7 @@ def start(archive: Archive, *words: str) -> "subprocess.Popen[str]":
 
 def run(archive: Archive, *words: str) -> dict[str, object]:
     with start(archive, *words, "--json") as process:
-        said, complained = process.communicate(timeout=90)
+        said, complained = process.communicate(timeout=PATIENCE_S)
     assert (process.returncode, complained) == (0, "")
     told: dict[str, object] = json.loads(said)
     return told
@@ -73,7 +78,9 @@ def diagnose_by_the_service(archive: Archive) -> None:
     )
     runner.start()
     try:
-        wait_until(lambda: len(repository.ended_jobs([job.id for job in queued])) == RECORDS, within_s=60)
+        wait_until(
+            lambda: len(repository.ended_jobs([job.id for job in queued])) == RECORDS, within_s=PATIENCE_S
+        )
     finally:
         runner.stop()
 
@@ -91,7 +98,7 @@ def test_a_batch_gives_what_the_service_gives_and_once(archive: Archive) -> None
 
 def test_a_batch_that_is_killed_goes_on(archive: Archive) -> None:
     with start(archive, "--model", MODEL, "--processes", "1") as process:
-        wait_until(lambda: sum(archive.made()) >= 3, within_s=60)
+        wait_until(lambda: sum(archive.made()) >= 3, within_s=PATIENCE_S)
         os.kill(process.pid, signal.SIGKILL)
         process.communicate(timeout=30)
     done = sum(archive.made())
@@ -134,9 +141,9 @@ def test_a_scheduler_that_dies_is_told_in_one_line_and_the_batch_goes_on(
         cluster(tmp_path) as (address, scheduler),
         start(archive, "--scheduler", address, "--model", MODEL) as process,
     ):
-        wait_until(lambda: sum(archive.made()) >= 2, within_s=60)
+        wait_until(lambda: sum(archive.made()) >= 2, within_s=PATIENCE_S)
         scheduler.kill()
-        _, complained = process.communicate(timeout=60)
+        _, complained = process.communicate(timeout=PATIENCE_S)
     done = sum(archive.made())
     assert process.returncode == 1
     assert complained == (
@@ -154,7 +161,7 @@ def test_an_edited_motors_file_asks_for_the_service_first(archive: Archive, tmp_
     motors.write_text(text.replace("stator_resistance_ohm = 8.4", "stator_resistance_ohm = 8.5"))
     archive.config.write_text(archive.config.read_text().replace(str(archive.settings.motors), str(motors)))
     with start(archive, "--processes", "1") as process:
-        _, complained = process.communicate(timeout=60)
+        _, complained = process.communicate(timeout=PATIENCE_S)
     assert process.returncode == 1
     assert complained.startswith("mcc: motor PUMP-A1: expected the parameters that the service noted")
     assert sum(archive.made()) == 0

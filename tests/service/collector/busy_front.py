@@ -2,7 +2,7 @@
 
 import asyncio
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass, field
 
 from ied_sim.front.transport import read_message
@@ -33,8 +33,9 @@ class BusyFront:
     port: int = 0
 
     async def serve(self, client: asyncio.StreamReader, to_client: asyncio.StreamWriter) -> None:
-        relay, to_relay = await asyncio.open_connection(LOOPBACK, self.target)
-        await asyncio.gather(self._requests(client, to_client, to_relay), self._pass(relay, to_client))
+        with closing(to_client):
+            relay, to_relay = await asyncio.open_connection(LOOPBACK, self.target)
+            await asyncio.gather(self._requests(client, to_client, to_relay), self._pass(relay, to_client))
 
     async def _requests(
         self, client: asyncio.StreamReader, to_client: asyncio.StreamWriter, to_relay: asyncio.StreamWriter

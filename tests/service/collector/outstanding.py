@@ -3,7 +3,7 @@
 import asyncio
 from collections import Counter
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass, field
 
 from ied_sim.front.transport import read_message
@@ -41,11 +41,12 @@ class Outstanding:
         """Listens in the relay's place; its port."""
 
         async def accept(client: asyncio.StreamReader, to_client: asyncio.StreamWriter) -> None:
-            relay, to_relay = await asyncio.open_connection(LOOPBACK, relay_port)
-            await asyncio.gather(
-                _pass(client, to_relay, self.asked, 0.0),
-                _pass(relay, to_client, self.answered, HELD_BACK_S),
-            )
+            with closing(to_client):
+                relay, to_relay = await asyncio.open_connection(LOOPBACK, relay_port)
+                await asyncio.gather(
+                    _pass(client, to_relay, self.asked, 0.0),
+                    _pass(relay, to_client, self.answered, HELD_BACK_S),
+                )
 
         with background_loop() as loop:
             starting = asyncio.start_server(accept, LOOPBACK, 0)

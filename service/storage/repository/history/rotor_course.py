@@ -142,7 +142,7 @@ def course_condition(session: Session, motor: str) -> RotorCondition:
         LoadBin(load_bin, records, baselines[load_bin].level_dB)
         for load_bin, records in sorted(session.execute(_OF_BINS, {"of_motor": motor}).all())
     ]
-    return rotor_condition(judged, _since_ns(session, motor, state_after(judged)), bins)
+    return rotor_condition(judged, since_ns(session, motor, state_after(judged)), bins)
 
 
 def latest_condition(session: Session, motor: str) -> RotorState | None:
@@ -207,8 +207,8 @@ def _baselines(session: Session, motor: str) -> dict[int, _Baseline]:
     }
 
 
-def _since_ns(session: Session, motor: str, state: RotorState) -> int | None:
-    """Return the time of the first record after the last one with another condition."""
+def since_ns(session: Session, motor: str, state: RotorState) -> int | None:
+    """Return the time of a motor's first record after the last one with another condition of its rotor."""
     if state not in TOLD_STATES:  # no record counts
         return None
     after: dict[str, int | str] = {}

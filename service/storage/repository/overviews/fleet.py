@@ -5,12 +5,12 @@ from collections.abc import Mapping
 from sqlalchemy import or_, select
 from sqlalchemy.orm import Session, aliased
 
-from core.rotor.finding import RotorState
 from service.alarms.rotor_rules import KINDS
 from service.storage.models import AlarmRow, DiagnosisRow, IedRow, MotorRow
 from service.storage.models.alarms import in_state
-from service.storage.records import CallingAlarms, FleetMotor, LatestFigures, MotorEntry
+from service.storage.records import CallingAlarms, FleetMotor, LatestFigures, MotorEntry, StandingRotor
 from service.storage.repository.conditions.conditions import conditions_of
+from service.storage.repository.history.rotor_course import since_ns
 from service.storage.repository.sessions import Sessions, columns_of
 from service.storage.states import AlarmState
 
@@ -85,10 +85,11 @@ def _calling(session: Session) -> Mapping[str, CallingAlarms]:
     return found
 
 
-def _rotors(session: Session) -> Mapping[str, RotorState]:
-    """Return the state of each rotor that somebody has to look after: that of its standing alarm."""
+def _rotors(session: Session) -> Mapping[str, StandingRotor]:
+    """Return each rotor that somebody has to look after, in the state of its standing alarm."""
     state_of = {kind: state for state, kind in KINDS.items()}
     query = select(AlarmRow.motor, AlarmRow.kind).where(
         or_(*map(in_state, OPEN_STATES)), AlarmRow.kind.in_(tuple(state_of)), AlarmRow.cleared_ns.is_(None)
     )
-    return {motor: state_of[kind] for motor, kind in session.execute(query) if motor is not None}
+    states = {motor: state_of[kind] for motor, kind in session.execute(query) if motor is not None}
+    return {motor: StandingRotor(state, since_ns(session, motor, state)) for motor, state in states.items()}

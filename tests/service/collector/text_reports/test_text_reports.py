@@ -85,6 +85,7 @@ def test_what_a_simulated_relay_reports_of_a_start_is_kept(reading: Bench, tmp_p
                 client.operate(served.reference("CON/RBGGIO1.SPCSO03"), value=True)
             assert eventually(lambda: reported_starts(here) == 1, LONG_S)
             assert eventually(lambda: RelayEventKind.START in events(here), LONG_S)
+            assert eventually(lambda: here.repository.latest_relay_statistics(MOTOR) is not None, LONG_S)
     assert used(here)["text_reports"] == ["CSER", "CLDP", "MSR", "MOT"]
     assert "is not read" not in remarks(here)
     statistics = here.repository.latest_relay_statistics(MOTOR)

@@ -7,7 +7,7 @@ import pytest
 from core.rotor.finding import RotorState
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
-from service.storage.records import Actor, Alarm
+from service.storage.records import Actor, Alarm, StandingRotor
 from service.storage.states import AlarmKind, AlarmState
 from testing.service.plants import NOW_NS, two_motor_plant
 from testing.service.rotor_and_supply import BROKEN_ROTOR, SHORT_RECORD, SOUND_ROTOR, ExaminedRecordings
@@ -50,6 +50,17 @@ def test_a_fault_is_told_when_two_records_agree_and_is_over_when_they_do_no_more
     for _ in range(3):
         recorded.add(SOUND_ROTOR)
     assert settled(recorded) == []
+
+
+def test_the_fleet_shows_a_rotor_and_since_which_record(recorded: ExaminedRecordings) -> None:
+    first, *_ = (recorded.add(finding) for finding in (SOUND_ROTOR, SOUND_ROTOR, UNEVEN, UNEVEN, UNEVEN))
+    settled(recorded)
+    repository = recorded.repository
+    course = repository.rotor_condition("PUMP-A1")
+    pump, fan = sorted(repository.fleet(), key=lambda one: one.motor.name, reverse=True)
+    assert pump.rotor == StandingRotor(RotorState.WATCH, course.since_ns)
+    assert (course.since_ns or 0) > (repository.recording(first).recorded_ns or 0)
+    assert fan.rotor is None
 
 
 def test_the_alarm_says_the_same_however_often_it_is_settled(recorded: ExaminedRecordings) -> None:

@@ -9,7 +9,14 @@ from core.diagnosis.verdict import Verdict
 from core.machines.parameters import ParametersSource
 from core.rotor.finding import RotorState
 from core.units import NANOSECONDS_PER_DAY, NANOSECONDS_PER_SECOND
-from service.storage.records import CallingAlarms, ConditionEntry, FleetMotor, LatestFigures, MotorEntry
+from service.storage.records import (
+    CallingAlarms,
+    ConditionEntry,
+    FleetMotor,
+    LatestFigures,
+    MotorEntry,
+    StandingRotor,
+)
 from service.storage.states import AlarmPriority, LinkState
 from service.web.fleet.filters import FleetFilter
 from service.web.fleet.rows import FleetRow, counts, row_of
@@ -70,10 +77,11 @@ def calling(urgency: int, priority: AlarmPriority) -> CallingAlarms:
 
 def test_a_broken_rotor_counts_as_a_fault_beside_a_healthy_winding() -> None:
     motor = motor_of("PUMP", seen(entry_of(HEALTHY), 1))
-    broken = row_of(replace(motor, rotor=RotorState.FAULT), NOW_NS, 7.0)
+    broken = row_of(replace(motor, rotor=StandingRotor(RotorState.FAULT, WEEK_NS)), NOW_NS, 7.0)
     sound = row_of(motor, NOW_NS, 7.0)
     assert (broken.state, broken.all_states[0]) == (FleetState.HEALTHY, FleetState.FAULT)
     assert broken.needs_attention
+    assert (broken.rotor, broken.rotor_since_ns) == (RotorState.FAULT, WEEK_NS)
     assert not sound.needs_attention
     assert broken.advice.startswith("Have the cage inspected")
     assert sorted((sound, broken), key=lambda one: one.attention)[0] is broken
