@@ -1,7 +1,9 @@
 """What the pages cost at 500 motors: python -m benchmarks.web [--records N] [--keep DIR] [--quick].
 
 It fills a database once and keeps it in DIR, runs the site in a process of its own, asks for each page, has a
-browser paint it, and lets 50 viewers follow the fleet. It ends with 1 where a page misses its goal.
+browser paint it, looks at every page for errors, and lets 50 viewers follow the fleet. It ends with 1 where a
+page misses its goal or has an error. With --home-assistant the pages of that program are measured, too
+(benchmarks/web/home_assistant.py says how to get it).
 """
 
 import argparse
@@ -16,6 +18,8 @@ from tempfile import TemporaryDirectory
 from benchmarks.reporting import table
 from benchmarks.storage.plant import motor_name
 from benchmarks.web.answers import Answers, Site, answers, serving
+from benchmarks.web.beside import beside_home_assistant
+from benchmarks.web.every_page import faults_of_pages
 from benchmarks.web.filling import LONG, Plan, fill
 from benchmarks.web.painting import Painting, painting
 from benchmarks.web.recordings import store_long_recording
@@ -52,7 +56,15 @@ def main() -> None:
         sys.exit(f"no chromium: {INSTALL}")
     turns = QUICK_TURNS if arguments.quick else TURNS
     with _data(arguments) as data, serving(data) as site:
-        missed = _pages(site, path, _goals(data), turns)
+        goals = _goals(data)
+        missed = _pages(site, path, goals, turns)
+        missed += _looked_at(site, path, data)
+        if arguments.home_assistant is not None:
+            with running_browser(path) as browser:
+                paths = {goal.name: goal.path for goal in goals}
+                motor = motor_name(LONG), paths["motor, usual span"]
+                lines = beside_home_assistant(browser, site, paths["fleet"], motor, arguments.home_assistant)
+            print("\n".join(lines), flush=True)
         missed += _viewers(site, data, QUICK_MEASURED_S if arguments.quick else MEASURED_S)
     for words in missed:
         print(f"missed: {words}")
@@ -64,6 +76,9 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--records", type=int, default=10_000, help="of each motor")
     parser.add_argument("--motors", type=int, default=500)
     parser.add_argument("--keep", type=Path, help="fill the database here, or use the one that is here")
+    parser.add_argument(
+        "--home-assistant", type=Path, metavar="HASS", help="measure this program's pages, too"
+    )
     parser.add_argument("--quick", action="store_true", help="fewer turns")
     return parser.parse_args()
 
@@ -157,6 +172,18 @@ def _missed(goal: Goal, found: Answers, painted: Painting) -> Iterator[str]:
         yield f"{goal.name}: charts are drawn {seen}, not {1000 * goal.charts_s:.0f}"
     if goal.bytes is not None and size > goal.bytes:
         yield f"{goal.name}: {size / 1000:.0f} kB, not {goal.bytes / 1000:.0f}"
+
+
+def _looked_at(site: Site, chromium: str, data: Path) -> list[str]:
+    engine = connect(sqlite_url(data))
+    try:
+        with running_browser(chromium) as browser:
+            found = dict(faults_of_pages(browser, site, Repository(engine)))
+    finally:
+        engine.dispose()
+    wrong = [f"{path}: {fault}" for path, faults in found.items() for fault in faults]
+    print(f"{len(found)} pages looked at on a desktop and a phone: {len(wrong)} errors", flush=True)
+    return wrong
 
 
 def _viewers(site: Site, data: Path, seconds: float) -> list[str]:

@@ -11,39 +11,32 @@ from dataclasses import fields
 from sqlalchemy import bindparam, delete, func, insert, or_, select, update
 from sqlalchemy.orm import Session
 
-from core.condition.events import EventKind
-from core.condition.observation import SAME_SUPPLY_WITHIN_NS
 from service.alarms.condition_rules import AT_ONCE, ConditionRules
 from service.storage.models import (
     Base,
     ConditionChangeRow,
     ConditionCheckpointRow,
-    ConditionEventRow,
     ConditionRow,
     FoldMarkRow,
     MotorRow,
-    MotorVersionRow,
     ObservationRow,
 )
 from service.storage.records import (
-    BusMotor,
     Checkpoint,
     ConditionChange,
-    ConditionEvent,
     ConditionFigures,
     FoldInput,
     FoldResult,
-    MotorVersion,
-    RecordObservation,
 )
 from service.storage.repository.alarms.conditions import settle_alarm
 from service.storage.repository.alarms.drift import settle_drift_alarm
+from service.storage.repository.conditions.fold_input import fold_input
 from service.storage.repository.conditions.fold_marks import EARLIEST_NS, mark, others_of_bus, resume
-from service.storage.repository.conditions.observations import OBSERVED, record_observation, take_in_again
+from service.storage.repository.conditions.observations import take_in_again
 from service.storage.repository.conditions.standing_changes import TOLD, is_material
-from service.storage.repository.conditions.tracking import followed_starts, write_tracked_points
+from service.storage.repository.conditions.tracking import write_tracked_points
 from service.storage.repository.history.condition_days import keep_days
-from service.storage.repository.sessions import NONE_HELD, Sessions, found, only, record_of, values_of
+from service.storage.repository.sessions import NONE_HELD, Sessions, found, record_of, values_of
 from service.storage.texts import storable
 
 _OBSERVATIONS = Base.metadata.tables["observations"]
@@ -55,7 +48,6 @@ _SAID = (
     .where(_OBSERVATIONS.c.recording_id == bindparam("of_recording"))
     .values({name: bindparam(name) for name in _FIGURES})
 )
-_BUS = select(MotorRow.bus).where(MotorRow.name == bindparam("of_motor"))
 
 IDS_A_STATEMENT = 500
 """Databases limit how many values a statement may hold."""
@@ -149,30 +141,12 @@ class FoldingRows(Sessions):
         with self._read() as session:
             version = found(session, ConditionRow, motor, "motor").version
             # Marks before what they are for: what comes in between has a mark of its own, which stays.
-            marks = session.execute(
-                select(FoldMarkRow.id, FoldMarkRow.from_ns).where(FoldMarkRow.motor == motor)
-            ).all()
-            if not marks:
-                return None
-            checkpoint = _checkpoint_before(session, motor, min(from_ns for _, from_ns in marks))
-            done_ns = EARLIEST_NS if checkpoint is None else checkpoint.time_ns
-            observations, next_ns = _observations(session, motor, done_ns, most_records)
-            has_bus = session.scalar(_BUS, {"of_motor": motor}) is not None
-            return FoldInput(
-                motor=motor,
-                version=version,
-                marks=tuple(id_ for id_, _ in marks),
-                checkpoint=checkpoint,
-                earlier=_earlier_checkpoints(session, motor, done_ns),
-                observations=observations,
-                next_ns=next_ns,
-                events=_events(session, motor, done_ns, next_ns),
-                bus=_bus(session, motor) if has_bus else (),
-                neighbours=_neighbours(session, motor, observations) if has_bus else (),
-                motor_versions=tuple(_versions(session, motor)),
-                latest_change=_latest_change(session, motor, done_ns),
-                starts=followed_starts(session, motor, done_ns, next_ns),
+            marks = dict(
+                session.execute(
+                    select(FoldMarkRow.id, FoldMarkRow.from_ns).where(FoldMarkRow.motor == motor)
+                ).all()
             )
+            return fold_input(session, motor, version, marks, most_records) if marks else None
 
     def finish_fold(
         self, fold: FoldInput, result: FoldResult, *, now_ns: int, rules: ConditionRules = AT_ONCE
@@ -236,101 +210,6 @@ class FoldingRows(Sessions):
             return tuple(record_of(Checkpoint, row) for row in session.scalars(query))
 
 
-def _checkpoint_before(session: Session, motor: str, from_ns: int) -> Checkpoint | None:
-    query = (
-        select(ConditionCheckpointRow)
-        .where(ConditionCheckpointRow.motor == motor, ConditionCheckpointRow.time_ns < from_ns)
-        .order_by(ConditionCheckpointRow.time_ns.desc())
-    )
-    row = only(session, query)
-    return None if row is None else record_of(Checkpoint, row)
-
-
-def _earlier_checkpoints(session: Session, motor: str, done_ns: int) -> Mapping[int, int]:
-    """Return the numbers of records of the checkpoints up to a time, by their times."""
-    query = select(ConditionCheckpointRow.time_ns, ConditionCheckpointRow.records).where(
-        ConditionCheckpointRow.motor == motor, ConditionCheckpointRow.time_ns <= done_ns
-    )
-    return dict(session.execute(query).all())
-
-
-def _observations(
-    session: Session, motor: str, done_ns: int, most: int
-) -> tuple[tuple[RecordObservation, ...], int | None]:
-    """Return the next observations of a motor, whole times only, and the time of the first one beyond."""
-    following = (
-        select(*OBSERVED)
-        .where(
-            ObservationRow.motor == motor, ObservationRow.time_ns > done_ns, ObservationRow.left_out.is_(None)
-        )
-        .order_by(ObservationRow.time_ns, ObservationRow.recording_id)
-    )
-    rows = session.execute(following.limit(most + 1)).all()
-    next_ns = None
-    if len(rows) > most:
-        next_ns = rows[most].time_ns
-        rows = [row for row in rows if row.time_ns < next_ns]
-        if not rows:
-            rows = session.execute(following.where(ObservationRow.time_ns == next_ns)).all()
-            next_ns = session.scalar(
-                select(func.min(ObservationRow.time_ns)).where(
-                    ObservationRow.motor == motor,
-                    ObservationRow.time_ns > rows[0].time_ns,
-                    ObservationRow.left_out.is_(None),
-                )
-            )
-    return tuple(record_observation(row) for row in rows), next_ns
-
-
-def _events(session: Session, motor: str, done_ns: int, next_ns: int | None) -> tuple[ConditionEvent, ...]:
-    """Return the next events of a motor, in their order, without notes and what was withdrawn."""
-    query = select(ConditionEventRow).where(
-        ConditionEventRow.motor == motor,
-        ConditionEventRow.time_ns > done_ns,
-        ConditionEventRow.kind != EventKind.NOTE,
-        ConditionEventRow.withdrawn_ns.is_(None),
-    )
-    if next_ns is not None:
-        query = query.where(ConditionEventRow.time_ns < next_ns)
-    order = (ConditionEventRow.time_ns, ConditionEventRow.made_ns, ConditionEventRow.id)
-    return tuple(record_of(ConditionEvent, row) for row in session.scalars(query.order_by(*order)))
-
-
-def _neighbours(
-    session: Session, motor: str, observations: Sequence[RecordObservation]
-) -> tuple[RecordObservation, ...]:
-    """Return the observations of other motors of the bus in the time of these, in their order."""
-    if not observations:
-        return ()
-    first_ns, last_ns = (observations[at].observation.time_ns for at in (0, -1))
-    query = (
-        select(*OBSERVED)
-        .where(
-            ObservationRow.motor.in_(others_of_bus(motor)),
-            ObservationRow.left_out.is_(None),
-            ObservationRow.time_ns.between(first_ns - SAME_SUPPLY_WITHIN_NS, last_ns + SAME_SUPPLY_WITHIN_NS),
-        )
-        .order_by(ObservationRow.time_ns, ObservationRow.recording_id)
-    )
-    return tuple(record_observation(row) for row in session.execute(query))
-
-
-def _bus(session: Session, motor: str) -> tuple[BusMotor, ...]:
-    document = (
-        select(MotorVersionRow.document)
-        .where(MotorVersionRow.motor == ConditionRow.motor)
-        .order_by(MotorVersionRow.from_ns.desc())
-        .limit(1)
-        .scalar_subquery()
-    )
-    query = (
-        select(ConditionRow.motor, document, ConditionRow.standing)
-        .where(ConditionRow.motor.in_(others_of_bus(motor)))
-        .order_by(ConditionRow.motor)
-    )
-    return tuple(BusMotor(*row) for row in session.execute(query))
-
-
 def _mark_latest_of_bus(session: Session, motor: str) -> None:
     """Have the others of the bus judged anew: what stands in all of them is the bus's, not theirs."""
     query = select(ConditionRow.motor, ConditionRow.as_of_ns).where(
@@ -339,22 +218,6 @@ def _mark_latest_of_bus(session: Session, motor: str) -> None:
     for other, as_of_ns in session.execute(query).all():
         if as_of_ns is not None:
             mark(session, other, as_of_ns)
-
-
-def _versions(session: Session, motor: str) -> Iterator[MotorVersion]:
-    query = select(MotorVersionRow).where(MotorVersionRow.motor == motor).order_by(MotorVersionRow.from_ns)
-    return (record_of(MotorVersion, row) for row in session.scalars(query))
-
-
-def _latest_change(session: Session, motor: str, done_ns: int) -> ConditionChange | None:
-    query = (
-        select(ConditionChangeRow)
-        .where(ConditionChangeRow.motor == motor, ConditionChangeRow.time_ns <= done_ns)
-        # Of one time, events come before records.
-        .order_by(ConditionChangeRow.time_ns.desc(), ConditionChangeRow.event_id.is_not(None))
-    )
-    row = only(session, query)
-    return None if row is None else record_of(ConditionChange, row)
 
 
 def _write_points(session: Session, result: FoldResult) -> None:
