@@ -67,7 +67,7 @@ class SeriesUnderWay:
         """
         self.control = control
         self._rhythm = rhythm
-        self._began_s = began_s
+        self._latest_s = began_s
         self._record_timeout_s = record_timeout_s
         self._triggered = 1
         self._came = 0
@@ -76,11 +76,13 @@ class SeriesUnderWay:
         """Return the time until the next trigger; infinite where the last one is done."""
         if self._triggered >= self._rhythm.triggers:
             return inf
-        return max(0.0, self._began_s + self._triggered * self._rhythm.period_s - now_s)
+        # Counted from the latest one: after a late trigger the next must not fall into the record under way.
+        return max(0.0, self._latest_s + self._rhythm.period_s - now_s)
 
-    def triggered(self) -> None:
+    def triggered(self, now_s: float) -> None:
         """Note that the relay was triggered again."""
         self._triggered += 1
+        self._latest_s = now_s
 
     def came(self) -> None:
         """Note that a record came."""
@@ -88,7 +90,6 @@ class SeriesUnderWay:
 
     def is_over(self, now_s: float) -> bool:
         """Return whether all of its records came, or no more are to be waited for."""
-        last_s = self._began_s + (self._rhythm.triggers - 1) * self._rhythm.period_s
         return self.due_in_s(now_s) == inf and (
-            self._came >= self._rhythm.triggers or now_s > last_s + self._record_timeout_s
+            self._came >= self._rhythm.triggers or now_s > self._latest_s + self._record_timeout_s
         )

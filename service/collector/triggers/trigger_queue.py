@@ -115,7 +115,7 @@ class TriggerQueue:
             log.warning("the series ends early", relay=self._relay.name, reason=str(error))
             self._series = None
             return
-        series.triggered()
+        series.triggered(time.monotonic())
         time.sleep(HOLD_S)
         self._end_pulse(client, series.control)
 

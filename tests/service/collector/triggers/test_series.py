@@ -294,15 +294,26 @@ def test_a_long_record_is_made_by_its_interval_once_motor_and_link_are_steady(
     assert request.joined_recording_id is not None
 
 
+def test_after_a_late_trigger_the_next_keeps_its_distance() -> None:
+    """A relay takes no trigger while it records: one in time with the first would be lost."""
+    rhythm = rhythm_of((0.7, 0.4), WANTED_S)
+    series = SeriesUnderWay("RB", rhythm, began_s=100.0, record_timeout_s=20.0)
+    late_s = 100.0 + 1.9 * rhythm.period_s
+    series.triggered(late_s)
+    assert series.due_in_s(late_s) == pytest.approx(rhythm.period_s)
+
+
 def test_a_series_waits_for_its_records_but_not_for_ever() -> None:
     rhythm = rhythm_of((0.7, 0.4), WANTED_S)
     series = SeriesUnderWay("RB", rhythm, began_s=100.0, record_timeout_s=20.0)
     assert series.due_in_s(100.0) == pytest.approx(rhythm.period_s)
+    last_s = 100.0
     for _ in range(rhythm.triggers - 1):
         assert not series.is_over(1_000.0)
-        series.triggered()
+        last_s += series.due_in_s(last_s)
+        series.triggered(last_s)
     assert series.due_in_s(101.0) == inf
-    last_s = 100.0 + (rhythm.triggers - 1) * rhythm.period_s
+    assert last_s == pytest.approx(100.0 + (rhythm.triggers - 1) * rhythm.period_s)
     assert not series.is_over(last_s + 19.9)
     assert series.is_over(last_s + 20.1)
     for _ in range(rhythm.triggers):
