@@ -73,7 +73,7 @@ def beside_home_assistant(
             ("StatorWatch: all motors", ours, site.url + fleet, motor[0]),
             ("Home Assistant: all devices", theirs, f"{peer.url}/config/devices/dashboard", DEVICE),
             ("StatorWatch: a motor", ours, site.url + motor[1], "Logbook"),
-            ("Home Assistant: a device", theirs, peer.url + device, "Logbook"),
+            ("Home Assistant: a device", theirs, peer.url + device, "Device info"),
         )
         found = [(name, windows.shown(address, text)) for name, windows, address, text in pages]
     rows = [
