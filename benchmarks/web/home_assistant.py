@@ -1,6 +1,6 @@
 """Home Assistant with its demo: a peer that runs beside our pages.
 
-python -m venv DIR && DIR/bin/pip install homeassistant==2024.3.3 home-assistant-frontend==20240307.0 'josepy<2'
+python -m venv DIR && DIR/bin/pip install homeassistant==2024.3.3 home-assistant-frontend 'josepy<2'
 python -m benchmarks.web --home-assistant DIR/bin/hass
 """
 
