@@ -1,4 +1,4 @@
-# make install | demo | test | test-all | lint | bench | fuzz SECONDS=60 | interop [LIBIEC61850=TREE]    (PYTHON=python3.11 make install: another interpreter)
+# make install | demo | test | test-all | coverage | lint | bench | fuzz SECONDS=60 | interop [LIBIEC61850=TREE]    (PYTHON=python3.11 make install: another interpreter)
 # make chaos SEED=1 MINUTES=2 RECORDINGS=300 RELAYS=12 [FAULTS=1] [DATABASE=postgresql] [JSON=FILE] [DATA=DIR]     (faults of all kinds: docs/evidence/track-record.md)
 # make bench [QUICK=1] [DATA=FOLDER]     (DATA: measured recordings, for docs/evidence/condition.md)
 # make corpus DIR=FOLDER     (how recordings and SCL files of a folder are read: docs/evidence/corpus.md)
@@ -14,7 +14,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 # docker compose where its engine answers, else nothing; COMPOSE="podman-compose" make compose-test: another one
 COMPOSE ?= $(shell docker compose version >/dev/null 2>&1 && docker info >/dev/null 2>&1 && echo docker compose)
 
-.PHONY: install demo test test-all hostile chaos compose-test compose-test-hosts lint docs bench corpus interop fuzz lock clean
+.PHONY: install demo test test-all coverage hostile chaos compose-test compose-test-hosts lint docs bench corpus interop fuzz lock clean
 .DEFAULT_GOAL := install
 
 install: $(WARM)
@@ -41,14 +41,18 @@ demo: install
 test: install
 	$(BIN)/python -m pytest -q -m "not campaign"
 
-# The same with coverage, and the campaigns; the containers where an engine answers. Long tests that have limits of time
-# do not share the cores with as many others.
+# The same and the campaigns; the containers where an engine answers. Long tests that have limits of time do not share the
+# cores with as many others.
 test-all: install
-	.ci/pytest -q -m "not campaign" --cov
-	.ci/pytest -q -m campaign -n 2 --cov --cov-append
+	.ci/pytest -q -m "not campaign"
+	.ci/pytest -q -m campaign -n 2
 	$(MAKE) hostile
 	$(MAKE) chaos
 	$(if $(COMPOSE),$(MAKE) compose-test,@echo "compose-test: not run, no Docker engine answers here and COMPOSE names no other compose command")
+
+# Branch coverage of all tests, at 90 % or more. It takes up to half as long again.
+coverage: install
+	$(BIN)/python -m pytest -q -n 2 --cov
 
 # A relay that answers nonsense. `python -m tests.hostile` also shows it to a whole service, for five minutes.
 hostile: install
