@@ -18,7 +18,7 @@ from tests.hostile.surroundings import Snapshot, strangers
 CASES = 300
 MOST_MEMORY_MB = 400.0
 
-pytestmark = pytest.mark.timeout(180)
+pytestmark = pytest.mark.timeout(300)
 
 
 @pytest.fixture(scope="module")

@@ -122,7 +122,7 @@ def test_what_would_fail_again_is_rejected(tmp_path: Path) -> None:
     assert "'guess' is unknown" in reasons[2]
 
 
-@pytest.mark.timeout(180)
+@pytest.mark.timeout(300)
 def test_worker_processes_diagnose(repository: Repository, store: RecordingStore, tmp_path: Path) -> None:
     entry = write(tmp_path / "EVENT", recording())
     stored = store.store({path.name: path for path in (entry, entry.with_suffix(".DAT"))})

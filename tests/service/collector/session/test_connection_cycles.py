@@ -11,7 +11,7 @@ import pytest
 from benchmarks.collector.connection_cycles import Visits, closed_by_the_client, cut, grown, unanswered
 from testing.relays.serving import Relaying, RelayProcess, mute_server
 
-pytestmark = pytest.mark.timeout(180)
+pytestmark = pytest.mark.timeout(300)
 
 
 @pytest.fixture
