@@ -39,6 +39,16 @@ def migrated_sqlite(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def database_url(request: pytest.FixtureRequest, tmp_path: Path, migrated_sqlite: Path) -> str:
     """A migrated database; tests may ask for "postgresql" as this fixture's parameter."""
+    return _migrated(request, tmp_path, migrated_sqlite)
+
+
+@pytest.fixture(params=["sqlite", "postgresql"])
+def database_url_of_each(request: pytest.FixtureRequest, tmp_path: Path, migrated_sqlite: Path) -> str:
+    """A migrated database on each of both, for rooms whose tests run on both."""
+    return _migrated(request, tmp_path, migrated_sqlite)
+
+
+def _migrated(request: pytest.FixtureRequest, tmp_path: Path, migrated_sqlite: Path) -> str:
     if getattr(request, "param", "sqlite") == "postgresql":
         url = request.getfixturevalue("postgresql_url")
         assert isinstance(url, str)

@@ -1,3 +1,5 @@
+"""Every test of the API runs on both databases, unless it says that it is about one of them."""
+
 from collections.abc import Iterator, MutableMapping
 from pathlib import Path
 from typing import Any
@@ -11,7 +13,8 @@ from service.configuration.settings import Settings
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from tests.service.api.serving import serving
-from tests.service.fixtures import database_url, engine, repository, store
+from tests.service.fixtures import database_url_of_each as database_url
+from tests.service.fixtures import engine, repository, store
 
 __all__ = ["database_url", "engine", "repository", "store"]
 

@@ -6,15 +6,12 @@ from functools import partial
 from threading import Barrier
 
 import httpx
-import pytest
 
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
 
 KEYS = 40
 NAMES = 20
-
-pytestmark = pytest.mark.parametrize("database_url", ["sqlite", "postgresql"], indirect=True)
 
 
 def at_once(posts: Sequence[Callable[[], httpx.Response]]) -> list[httpx.Response]:

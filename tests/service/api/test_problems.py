@@ -85,6 +85,7 @@ def test_a_failure_of_the_service(context: ApiContext, engine: Engine) -> None:
     assert "no such table" not in response.text, "what went wrong inside is for the log"
 
 
+@pytest.mark.parametrize("database_url", ["sqlite"], indirect=True)
 def test_a_database_that_is_locked_for_long(tmp_path: Path, store: RecordingStore, database_url: str) -> None:
     repository = Repository(connect(database_url, busy_timeout_s=0.2))
     repository.sync_plant(two_motor_plant())

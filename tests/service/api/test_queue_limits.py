@@ -17,9 +17,6 @@ from testing.service.plants import NOW_NS, healthy
 REQUEST = "/api/v1/motors/PUMP-A1/event-reports"
 
 
-BOTH = pytest.mark.parametrize("database_url", ["sqlite", "postgresql"], indirect=True)
-
-
 @pytest.fixture
 def context(repository: Repository, store: RecordingStore, tmp_path: Path) -> ApiContext:
     settings = Settings(data_directory=tmp_path, max_open_requests=3, max_queued_diagnoses=3, max_notes=3)
@@ -34,7 +31,6 @@ def assert_told_to_wait(refused: httpx.Response, words: str) -> None:
     assert "ask again when some have ended" in refused.json()["detail"]
 
 
-@BOTH
 def test_a_motor_has_so_many_open_requests(client: httpx.Client, repository: Repository) -> None:
     first = client.post(REQUEST, headers={"Idempotency-Key": "a"}).json()
     for _ in range(2):
@@ -53,7 +49,6 @@ def upload(client: httpx.Client, content: bytes) -> httpx.Response:
     return client.post("/api/v1/recordings", data={"motor": "PUMP-A1"}, files=files)
 
 
-@BOTH
 def test_a_motor_has_so_many_queued_diagnoses(
     client: httpx.Client, repository: Repository, store: RecordingStore
 ) -> None:
@@ -76,7 +71,6 @@ def test_a_motor_has_so_many_queued_diagnoses(
     assert repository.counts().jobs == {JobState.QUEUED: 4}
 
 
-@BOTH
 def test_a_motor_has_so_many_notes(client: httpx.Client) -> None:
     motor = "/api/v1/motors/PUMP-A1"
     note, restart = {"text": "hums", "by": "A. Miller"}, {"reason": "tested", "by": "A. Miller"}
@@ -92,7 +86,6 @@ def test_a_motor_has_so_many_notes(client: httpx.Client) -> None:
     assert client.post("/api/v1/motors/FAN-A2/notes", json=note).status_code == 201
 
 
-@BOTH
 def test_no_number_of_notes_keeps_a_wrong_baseline_or_reference(
     client: httpx.Client, repository: Repository, store: RecordingStore
 ) -> None:
@@ -111,7 +104,6 @@ def test_no_number_of_notes_keeps_a_wrong_baseline_or_reference(
     assert client.post(f"{motor}/notes", json=note).status_code == 409
 
 
-@BOTH
 def test_what_baselines_and_references_note_counts(
     client: httpx.Client, repository: Repository, store: RecordingStore
 ) -> None:

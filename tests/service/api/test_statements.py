@@ -55,6 +55,7 @@ def plan_of(engine: Engine, statement: str) -> list[str]:
         return [row[-1] for row in connection.exec_driver_sql(f"EXPLAIN QUERY PLAN {statement}", bound)]
 
 
+@pytest.mark.parametrize("database_url", ["sqlite"], indirect=True)
 def test_the_metrics_read_no_table_that_grows(
     asked: Asked, client: httpx.Client, repository: Repository, engine: Engine, recording_id: str
 ) -> None:

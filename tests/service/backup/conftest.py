@@ -22,7 +22,6 @@ from tests.service.storage.conftest import (
     database_url,
     engine,
     repository,
-    sqlite_database_url,
     store,
     the_state_counts_are_right,
 )
@@ -31,7 +30,6 @@ __all__ = [
     "database_url",
     "engine",
     "repository",
-    "sqlite_database_url",
     "store",
     "the_state_counts_are_right",
 ]

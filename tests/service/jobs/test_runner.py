@@ -74,7 +74,6 @@ def test_every_recording_comes_to_its_end_whatever_the_workers_do(
     ]
 
 
-@pytest.mark.parametrize("database_url", ["sqlite", "postgresql"], indirect=True)
 def test_whatever_a_result_holds_its_job_alone_fails(
     repository: Repository, store: RecordingStore, engine: Engine
 ) -> None:
@@ -114,7 +113,6 @@ def test_whatever_a_result_holds_its_job_alone_fails(
     assert diagnosis.document["reasons"] == [readable]
 
 
-@pytest.mark.parametrize("database_url", ["sqlite", "postgresql"], indirect=True)
 def test_a_mass_of_repetitions_delays_no_fresh_record(repository: Repository, store: RecordingStore) -> None:
     old = add(repository, store, "slow")
     with running(repository, store, replace(LIMITS, workers=1)):
@@ -244,7 +242,6 @@ def test_a_killed_service_loses_no_job_and_leaves_no_worker(
     wait_until(lambda: not alive(worker))
 
 
-@pytest.mark.parametrize("database_url", ["sqlite", "postgresql"], indirect=True)
 def test_two_services_share_the_jobs_and_one_takes_over_from_a_killed_one(
     repository: Repository, store: RecordingStore, database_url: str
 ) -> None:

@@ -2,7 +2,6 @@ from tests.service.storage.conftest import (
     database_url,
     engine,
     repository,
-    sqlite_database_url,
     store,
     the_state_counts_are_right,
 )
@@ -11,7 +10,6 @@ __all__ = [
     "database_url",
     "engine",
     "repository",
-    "sqlite_database_url",
     "store",
     "the_state_counts_are_right",
 ]

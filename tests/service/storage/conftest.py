@@ -5,17 +5,10 @@ from collections.abc import Iterator
 import pytest
 
 from service.storage.states import JobState, RecordingRequestState, RecordingState
-from tests.service.fixtures import database_url as sqlite_database_url
+from tests.service.fixtures import database_url_of_each as database_url
 from tests.service.fixtures import engine, repository, standing_alarm_counts, state_counts, store
 
-__all__ = ["engine", "repository", "sqlite_database_url", "store"]
-
-
-@pytest.fixture(params=["sqlite", "postgresql"])
-def database_url(request: pytest.FixtureRequest) -> str:
-    url = request.getfixturevalue("sqlite_database_url" if request.param == "sqlite" else "postgresql_url")
-    assert isinstance(url, str)
-    return url
+__all__ = ["database_url", "engine", "repository", "store"]
 
 
 @pytest.fixture(autouse=True)

@@ -3,7 +3,6 @@
 import time
 
 import httpx
-import pytest
 
 from core.units import NANOSECONDS_PER_DAY, NANOSECONDS_PER_SECOND
 from service.api.times import rfc3339
@@ -14,10 +13,8 @@ from testing.service.plants import NOW_NS
 
 URL = "/api/v1/alarms"
 RELAY, OTHER = "A1_SEL710", "A2_SEL710"
-TWO_DATABASES = pytest.mark.parametrize("database_url", ["sqlite", "postgresql"], indirect=True)
 
 
-@TWO_DATABASES
 def test_what_to_act_on_first_is_at_the_top(client: httpx.Client, repository: Repository) -> None:
     def raised(subject: str, priority: AlarmPriority, number: int) -> str:
         spec = AlarmSpec(AlarmKind.FILE_REFUSED, "outside", subject, priority=priority)
@@ -55,7 +52,6 @@ def test_what_to_act_on_first_is_at_the_top(client: httpx.Client, repository: Re
     assert {one["id"] for one in client.get(URL).json()["items"]} > {over}
 
 
-@TWO_DATABASES
 def test_key_figures(client: httpx.Client, repository: Repository) -> None:
     now_ns = time.time_ns()
     today_ns = now_ns // NANOSECONDS_PER_DAY * NANOSECONDS_PER_DAY

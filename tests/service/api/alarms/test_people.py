@@ -18,7 +18,6 @@ from testing.service.plants import NOW_NS
 
 URL = "/api/v1/alarms"
 RELAY = "A1_SEL710"
-TWO_DATABASES = pytest.mark.parametrize("database_url", ["sqlite", "postgresql"], indirect=True)
 
 
 @pytest.fixture
@@ -89,7 +88,6 @@ def test_an_alarm_that_there_is_not(client: httpx.Client, method: str, way: str)
     assert (answer.status_code, answer.json()["detail"]) == (404, f"there is no alarm '{unknown}'")
 
 
-@TWO_DATABASES
 def test_two_people_at_once_of_whom_one_is_first(client: httpx.Client, alarm: Alarm) -> None:
     together = Barrier(4)
 

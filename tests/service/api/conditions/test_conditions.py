@@ -21,9 +21,6 @@ from testing.service.conditions import DRIFTING, FAULT, HEALTHY, tell
 from testing.service.job_runner import RUNNER
 from testing.service.observations import HOUR_NS, observation
 from testing.service.plants import NOW_NS, fault, healthy, two_motor_plant
-from tests.service.fixtures import database_url as sqlite_database_url
-
-__all__ = ["sqlite_database_url"]
 
 MOTOR = "/api/v1/motors/PUMP-A1"
 NOTE = {"kind": "maintenance", "text": "terminals cleaned", "by": "A. Miller"}
@@ -34,13 +31,6 @@ class Record(Protocol):
     """Add a diagnosed recording of PUMP-A1, so many hours after NOW_NS; return its id."""
 
     def __call__(self, hour: float, diagnosis: Diagnosis | None = None, /) -> str: ...
-
-
-@pytest.fixture(params=["sqlite", "postgresql"])
-def database_url(request: pytest.FixtureRequest) -> str:
-    url = request.getfixturevalue("sqlite_database_url" if request.param == "sqlite" else "postgresql_url")
-    assert isinstance(url, str)
-    return url
 
 
 @pytest.fixture

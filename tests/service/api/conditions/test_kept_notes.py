@@ -5,7 +5,6 @@ from concurrent.futures import ThreadPoolExecutor
 from threading import Barrier
 
 import httpx
-import pytest
 
 from core.condition.events import Event, EventKind
 from core.time_stamps import rfc3339
@@ -17,8 +16,6 @@ from testing.service.plants import NOW_NS
 
 MOTOR = "/api/v1/motors/PUMP-A1"
 NOTE = {"kind": "maintenance", "text": "terminals cleaned", "by": "A. Miller"}
-
-pytestmark = pytest.mark.parametrize("database_url", ["sqlite", "postgresql"], indirect=True)
 
 
 def test_a_note_is_kept_and_the_condition_is_to_follow_it(

@@ -69,7 +69,6 @@ def trend(repository: Repository, store: RecordingStore) -> Sequence[str]:
     return [*ids, add_diagnosed(repository, store, fault(0.05), NOW_NS, motor="FAN-A2")]
 
 
-@pytest.mark.parametrize("database_url", ["sqlite", "postgresql"], indirect=True)
 def test_a_trend_in_every_format(client: httpx.Client, trend: Sequence[str]) -> None:
     found = read(client.get(TREND, params={"format": "csv"}))
     assert [row["recording_id"] for row in found[:1] + found[3:]] == [trend[0], trend[3]]
@@ -88,7 +87,6 @@ def test_a_trend_in_every_format(client: httpx.Client, trend: Sequence[str]) -> 
     assert list(columns[0]) == list(found[0])
 
 
-@pytest.mark.parametrize("database_url", ["sqlite", "postgresql"], indirect=True)
 def test_a_trend_has_what_is_said_of_the_motor_too(
     client: httpx.Client, repository: Repository, store: RecordingStore
 ) -> None:
@@ -190,7 +188,6 @@ def test_hostile_words_of_a_relay_are_no_formulas(client: httpx.Client, reposito
     assert row["subject"] == "=cmd|' /C calc'!A0"
 
 
-@pytest.mark.parametrize("database_url", ["sqlite", "postgresql"], indirect=True)
 def test_alarms_as_the_lists_have_them(client: httpx.Client, repository: Repository) -> None:
     for at, relay in enumerate(("A1_SEL710", "A2_SEL710", "A1_SEL710")):
         repository.raise_alarm(relay, AlarmKind.FILE_REFUSED, f"{at}", "odd", now_ns=NOW_NS + at)

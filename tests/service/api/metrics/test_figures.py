@@ -72,7 +72,6 @@ def test_a_motor_without_records_has_no_figure_that_is_not_known(
     assert {name for name, *_ in of_motor(families, "FAN-A2")} == {"state", "kind", "condition_stale"}
 
 
-@pytest.mark.parametrize("database_url", ["sqlite", "postgresql"], indirect=True)
 def test_the_latest_valid_recording_tells_load_and_detection_limit(
     client: httpx.Client, repository: Repository, store: RecordingStore
 ) -> None:
@@ -85,7 +84,6 @@ def test_the_latest_valid_recording_tells_load_and_detection_limit(
     assert found[("recording_timestamp_seconds",)] == (NOW_NS + 2 * HOUR_NS) / NANOSECONDS_PER_SECOND
 
 
-@pytest.mark.parametrize("database_url", ["sqlite", "postgresql"], indirect=True)
 def test_open_alarms_are_counted_by_state_and_priority(client: httpx.Client, repository: Repository) -> None:
     raised = repository.raise_alarm("A1_SEL710", AlarmKind.QUARANTINED, "", "crashed", now_ns=NOW_NS)
     repository.raise_alarm("A2_SEL710", AlarmKind.FILE_REFUSED, "x", "odd", now_ns=NOW_NS)

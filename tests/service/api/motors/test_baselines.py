@@ -175,7 +175,6 @@ def test_a_motor_with_shorted_turns_is_not_its_own_baseline_without_a_reason(
     assert hidden.verdict is not Verdict.FAULT
 
 
-@pytest.mark.parametrize("database_url", ["sqlite", "postgresql"], indirect=True)
 def test_a_reason_is_kept_with_who_gave_it_and_when(client: httpx.Client, plant: Plant) -> None:
     doubtful, good = plant.recording(watch()), [plant.recording(healthy()) for _ in range(2)]
     wanted = {"recording_ids": [*good, doubtful]}

@@ -1,5 +1,5 @@
 """What raises alarms is tested on both databases."""
 
-from tests.service.storage.conftest import database_url, engine, repository, sqlite_database_url, store
+from tests.service.storage.conftest import database_url, engine, repository, store
 
-__all__ = ["database_url", "engine", "repository", "sqlite_database_url", "store"]
+__all__ = ["database_url", "engine", "repository", "store"]
