@@ -19,9 +19,11 @@ from service.collector.session.clock_monitor import (
     clock_reading,
     stamp_of,
 )
+from service.collector.text_reports.text_reports import USUAL, list_reports
 from service.configuration.relay_access import AccessError, credentials
 from service.configuration.settings import Settings
 from service.plant import Acquisition, Offer, Relay, acquisition_from_offer, acquisition_from_scl, differences
+from service.plant.overrides import NONE
 from service.process.logs import without_logs
 
 AT_A_TIME = 8
@@ -50,6 +52,7 @@ class RelaySurvey:
     differences: how many names differ from its SCL.
     folder: where its recordings are; None where none was found, for the reason `no_folder`.
     recordings: how many it lists.
+    text_reports: names of the text reports that it lists and the service reads.
     clock_offset_s: how far its clock is ahead of ours; None where no measured value changed meanwhile.
     stamp_age_s: how old its latest time stamp is, where nothing else is known of its clock.
     """
@@ -63,6 +66,7 @@ class RelaySurvey:
     folder: str | None = None
     no_folder: str | None = None
     recordings: int = 0
+    text_reports: tuple[str, ...] = ()
     clock_offset_s: float | None = None
     stamp_age_s: float | None = None
 
@@ -131,9 +135,17 @@ def _asked(relay: Relay, client: Client, settings: Settings, clock_s: float) -> 
         folder="/" if directory == ROOT else directory,
         no_folder=folders.missing,
         recordings=len(records),
+        text_reports=_text_reports(client, relay),
         clock_offset_s=offset_s,
         stamp_age_s=age_s,
     )
+
+
+def _text_reports(client: Client, relay: Relay) -> tuple[str, ...]:
+    directory = relay.overrides.reports_directory or USUAL
+    if directory == NONE:
+        return ()
+    return tuple(report.name for report in list_reports(client, directory).values())
 
 
 def _is_control(client: Client, reference: str) -> bool:

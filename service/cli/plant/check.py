@@ -92,6 +92,8 @@ def line_of(answer: RelaySurvey) -> str:
         f"{answer.recordings} recordings in {answer.folder}" if answer.folder else f"{answer.no_folder}",
         _clock(answer),
     ]
+    if answer.text_reports:
+        words.insert(-1, f"text reports {', '.join(answer.text_reports)}")
     if answer.differences:
         words.append(f"{answer.differences} names differ from its SCL file")
     return one_line(f"{name}: {'; '.join(words)}")
@@ -152,6 +154,7 @@ def _answer_document(answer: RelaySurvey) -> dict[str, object]:
         "differences": answer.differences,
         "folder": answer.folder,
         "recordings": answer.recordings,
+        "text_reports": list(answer.text_reports),
         "clock_offset_s": answer.clock_offset_s,
         "stamp_age_s": answer.stamp_age_s,
     }

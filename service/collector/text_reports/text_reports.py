@@ -52,6 +52,18 @@ LONGEST_REASON: Final = 300
 NOT_GIVEN = (AccessDenied, NotFound, ServiceFailed, TemporarilyUnavailable, FileSizeMismatch)
 
 
+def list_reports(client: Client, directory: str) -> dict[ReportKind, OfferedReport]:
+    """Return the text reports that a relay lists in a folder; none where it has no such folder.
+
+    Raises MmsError (the link).
+    """
+    try:
+        entries = client.files(directory)
+    except (*NOT_GIVEN, ProtocolError):
+        entries = ()
+    return offered_reports(entries, directory)
+
+
 class TextReports:
     """The text reports of one relay. Used by that relay's session alone.
 
@@ -120,11 +132,7 @@ class TextReports:
 
     def _look(self, client: Client) -> None:
         """List the folder. A relay that has none, or no report in it, is asked again at the next look."""
-        try:
-            entries = client.files(self._directory)
-        except (*NOT_GIVEN, ProtocolError):
-            entries = ()
-        found = offered_reports(entries, self._directory)
+        found = list_reports(client, self._directory)
         self.offered = tuple(report.name for report in found.values())
         self._troubles = {name: why for name, why in self._troubles.items() if name in self.offered}
         now_s = time.monotonic()

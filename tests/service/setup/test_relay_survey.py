@@ -14,6 +14,7 @@ from service.cli.plant.check import line_of
 from service.configuration.relay_access import RelayAccess
 from service.configuration.settings import Settings
 from service.plant import Relay, acquisition_from_scl
+from service.plant.overrides import Overrides
 from service.setup.draft import relays_to_ask
 from service.setup.relay_survey import RelaySurvey, survey
 from testing.ports import LOOPBACK
@@ -70,6 +71,15 @@ def test_what_can_be_seen_of_a_clock_is_told(
     found = acquisition_from_scl(mute)
     answer = RelaySurvey(mute, acquisition=found, clock_offset_s=offset_s, stamp_age_s=age_s)
     assert said in line_of(answer)
+
+
+def test_the_text_reports_of_a_relay_are_named(tmp_path: Path) -> None:
+    with simulated(tmp_path, scenario_of("sel-710-ed2")) as served:
+        (relay,) = relays_to_ask([served.address])
+        (answer,) = survey([relay], SETTINGS)
+        (unasked,) = survey([replace(relay, overrides=Overrides(reports_directory="none"))], SETTINGS)
+    assert "; text reports CSER, CLDP, MSR, MOT; " in line_of(answer)
+    assert "text reports" not in line_of(unasked)
 
 
 @pytest.mark.campaign
