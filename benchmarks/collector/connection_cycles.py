@@ -21,6 +21,7 @@ from mms import Client, MmsError
 from service.collector.session.relay_session import RelaySession
 from service.configuration.settings import Settings
 from service.plant import Relay
+from service.recording_store.folder import FolderStore
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect, migrate
 from service.storage.states import LinkState
@@ -126,7 +127,7 @@ class Visits:
         migrate(settings.database_url)
         repository = Repository(connect(settings.database_url))
         repository.sync_plant(two_motor_plant())
-        store = RecordingStore(settings.recordings_directory)
+        store = FolderStore(settings.recordings_directory)
         return cls(relay("A1_SEL710", "FACTORY_A", port), repository, store, settings)
 
     def visit(self) -> None:

@@ -13,7 +13,7 @@ from mms import Client, TlsConfiguration, filter_tls_log_from_stderr
 from mms.binding.library import shared_library
 from service.collector.records.listing import FolderListing, understand
 from service.collector.records.pull import pull
-from service.recording_store.store import RecordingStore
+from service.recording_store.folder import FolderStore
 from testing.ports import LOOPBACK
 from testing.relays.pki import Pki
 from testing.relays.serving import RelayProcess
@@ -118,7 +118,7 @@ def _stored(directory: Path, port: int, tls: TlsConfiguration | None) -> float:
         Client.connect(LOOPBACK, port, tls=tls) as client,
         tempfile.TemporaryDirectory(dir=directory) as root,
     ):
-        store = RecordingStore(Path(root))
+        store = FolderStore(Path(root))
         (record,) = understand([FolderListing(FOLDER, client.files(FOLDER))]).records
         begun_s = time.perf_counter()
         with store.incoming() as incoming:

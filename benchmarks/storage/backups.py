@@ -27,7 +27,7 @@ from service.backup.noted import make_noted_backup
 from service.backup.restoring import Place, restore_backup
 from service.backup.verification import verify_backup
 from service.configuration.settings import sqlite_url
-from service.recording_store.store import StoredFile, content_directory, manifest_digest
+from service.recording_store.contents import StoredFile, content_directory, manifest_digest
 from service.storage import Repository, connect, migrate
 from service.storage.models import DiagnosisRow, JobRow, RecordingFileRow, RecordingRow
 from service.storage.states import JobState, RecordingSource, RecordingState

@@ -23,7 +23,8 @@ from core.recordings import read
 from service.condition.worker import fold_due
 from service.configuration.settings import sqlite_url
 from service.plant import AveragingStep
-from service.recording_store.store import StoredFile, StoredRecording
+from service.recording_store.contents import StoredFile
+from service.recording_store.recording import StoredRecording
 from service.storage import Repository, connect, migrate
 from service.storage.records import RemoteRecord
 from testing.memory_folder import memory_folder
@@ -57,7 +58,7 @@ def stored(number: int, directory: Path) -> StoredRecording:
         StoredFile(f"HR_{number:05}{suffix}", 50_000, sha256(f"{number}{suffix}".encode()).hexdigest())
         for suffix in (".CFG", ".DAT")
     )
-    return StoredRecording(sha256(str(number).encode()).hexdigest(), directory, files)
+    return StoredRecording(sha256(str(number).encode()).hexdigest(), files, directory.is_dir)
 
 
 def write_records(repository: Repository, directory: Path, examined: Examined) -> None:

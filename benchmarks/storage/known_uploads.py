@@ -17,7 +17,7 @@ from fastapi.testclient import TestClient
 from service.api import ApiContext, create_app
 from service.client.credentials import bearer
 from service.configuration.settings import Settings
-from service.recording_store.store import RecordingStore
+from service.recording_store.folder import FolderStore
 from service.storage import Repository, connect
 from testing.service.accounts import token_of
 from testing.service.database import make_database
@@ -34,7 +34,7 @@ def main() -> int:
         settings = Settings(data_directory=directory)
         repository = Repository(connect(make_database(directory)))
         repository.sync_plant(two_motor_plant())
-        store = RecordingStore(settings.recordings_directory)
+        store = FolderStore(settings.recordings_directory)
         with TestClient(
             create_app(ApiContext(settings, repository, store)),
             base_url="http://localhost",
@@ -53,7 +53,7 @@ def _upload(client: TestClient, header: bytes) -> None:
     answer.raise_for_status()
 
 
-def _show(when: str, store: RecordingStore) -> tuple[int, int]:
+def _show(when: str, store: FolderStore) -> tuple[int, int]:
     folders = list(store.root.glob("??/*"))
     size_bytes = sum(path.stat().st_size for path in store.root.rglob("*") if path.is_file())
     print(f"{when}: {len(folders)} folders, {size_bytes / 1e6:.1f} MB")

@@ -24,6 +24,7 @@ from core.condition.observation import Observation
 from service.condition.folding import fold
 from service.configuration.settings import sqlite_url
 from service.plant import PlantMotor
+from service.recording_store.folder import FolderStore
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect, migrate
 from service.storage.records import RecordLength, RemoteRecord
@@ -68,7 +69,7 @@ def measure(records: int) -> Iterator[tuple[str, str, str]]:
         register_runner(repository)
         costs = Costs(engine)
         of_motor = plant().motors[0]
-        path = _Path(repository, RecordingStore(directory / "recordings"), costs)
+        path = _Path(repository, FolderStore(directory / "recordings"), costs)
         for number, observed in enumerate(records_of_a_motor(WARM_UP + records)):
             path.take(number, observed, of_motor)
         engine.dispose()

@@ -11,7 +11,7 @@ from service.api.server import ApiServer, connection_limits
 from service.application.serve import listening
 from service.configuration.settings import Settings
 from service.process.garbage_collection import spare_what_stays
-from service.recording_store.store import RecordingStore
+from service.recording_store.folder import FolderStore
 from service.storage import Repository, connect
 from testing.service.accounts import token_of
 
@@ -19,7 +19,7 @@ from testing.service.accounts import token_of
 def api_on(repository: Repository, directory: Path) -> FastAPI:
     """Return the API on a filled database, with a token for all of it; its recording store is empty."""
     settings = Settings(data_directory=directory)
-    app = create_app(ApiContext(settings, repository, RecordingStore(directory / "recordings")))
+    app = create_app(ApiContext(settings, repository, FolderStore(directory / "recordings")))
     app.state.token = token_of(repository)
     return app
 

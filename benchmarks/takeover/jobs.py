@@ -13,7 +13,7 @@ from sqlalchemy.orm import Session
 from benchmarks.takeover.hosts import Fault, Host, Site, freeze_inside_a_transaction, require_once
 from core.recordings.comtrade.writer import combined_bytes
 from core.units import NANOSECONDS_PER_HOUR
-from service.recording_store.store import RecordingStore
+from service.recording_store.folder import FolderStore
 from service.storage.models import DiagnosisRow, JobRow
 from service.storage.records import JobRunnerEntry
 from service.storage.states import JobState, RecordingState
@@ -47,7 +47,7 @@ class Records:
 
     def __init__(self, site: Site) -> None:
         self._repository = site.repository
-        self._store = RecordingStore(site.recordings, "benchmark")
+        self._store = FolderStore(site.recordings, "benchmark")
         self._numbers = count(1)
         self._begin_ns = time.time_ns()
         self.ids: list[str] = []

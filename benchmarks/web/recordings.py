@@ -8,7 +8,7 @@ import numpy as np
 from benchmarks.storage.plant import motor_name
 from core.recordings import Channel, Quantity, Recording, comtrade
 from service.configuration.settings import sqlite_url
-from service.recording_store.store import RecordingStore
+from service.recording_store.folder import FolderStore
 from service.storage import Repository, connect
 from testing.service.job_runner import RUNNER, register_runner
 from testing.service.plants import fault
@@ -43,7 +43,7 @@ def store_long_recording(data: Path) -> str:
     try:
         repository = Repository(engine)
         register_runner(repository)
-        stored = RecordingStore(data / "recordings").store(files)
+        stored = FolderStore(data / "recordings").store(files)
         added = repository.add_recording(stored, motor=motor_name(3), now_ns=now_ns)
         claimed = repository.claim_job(now_ns=now_ns, runner=RUNNER)
         assert claimed is not None

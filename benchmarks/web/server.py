@@ -9,7 +9,7 @@ from service.api.server import ApiServer, connection_limits
 from service.application.serve import listening
 from service.configuration.settings import Settings, sqlite_url
 from service.process.garbage_collection import spare_what_stays
-from service.recording_store.store import RecordingStore
+from service.recording_store.folder import FolderStore
 from service.storage import Repository, connect
 from service.web.app import create_site, end_streams
 from testing.web.site import log_in
@@ -20,7 +20,7 @@ def main() -> None:
     data = Path(sys.argv[1])
     settings = Settings(data_directory=data, port=0)
     repository = Repository(connect(sys.argv[2] if len(sys.argv) > 2 else sqlite_url(data)))
-    app = create_site(ApiContext(settings, repository, RecordingStore(data / "recordings")))
+    app = create_site(ApiContext(settings, repository, FolderStore(data / "recordings")))
     session = log_in(repository)
     spare_what_stays()
     with listening(settings) as listener:

@@ -21,7 +21,7 @@ from structlog.typing import FilteringBoundLogger
 
 from service.access.logins import LoginLockedError
 from service.process.disk_space import is_disk_full
-from service.recording_store.store import RecordingStoreError
+from service.recording_store.errors import RecordingStoreError, StoreError
 from service.storage.errors import (
     AlarmActionError,
     AlarmCannotGrowError,
@@ -312,6 +312,11 @@ def install(app: FastAPI) -> None:
     app.add_exception_handler(DoubtfulBaselineError, _doubtful)
     app.add_exception_handler(FolderGoneError, _busy)
     app.add_exception_handler(OSError, _full)
+
+    @app.exception_handler(StoreError)
+    def _store(request: Request, error: StoreError) -> JSONResponse:
+        log.error("the store of the recordings does not answer", path=request.url.path, error=str(error))
+        return busy_response(request.url.path, str(error))
 
     @app.exception_handler(RecordingStoreError)
     def _damaged(request: Request, error: RecordingStoreError) -> JSONResponse:

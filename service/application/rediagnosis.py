@@ -20,7 +20,7 @@ from service.jobs.limits import JobLimits
 from service.plant import Plant
 from service.process.installation import installation_id
 from service.process.single_instance import exclusive
-from service.recording_store.store import RecordingStore
+from service.recording_store.opening import open_store_anywhere
 from service.storage import Repository
 from service.storage.records import Actor, Cursor, Job
 from service.storage.states import JobState
@@ -80,7 +80,7 @@ def rediagnose(
     """
     motors = {motor.name: motor.motor for motor in plant.motors}
     _require_known(repository, motors, wanted.motors)
-    store = RecordingStore(settings.recordings_directory)
+    store = open_store_anywhere(settings)
     with exclusive(settings.data_directory / "rediagnosis.lock", wait=False):
         runner = JobRunner(
             repository,

@@ -16,7 +16,7 @@ from threading import Event
 import structlog
 
 from service.api.access.certificate import CertificateError, ServerCertificate
-from service.api.context import ApiContext
+from service.api.context import ApiContext, Problem
 from service.api.server import ApiServer, connection_limits
 from service.application.diagnosing import job_runner
 from service.application.parts import Part, running
@@ -36,6 +36,8 @@ from service.process.garbage_collection import spare_what_stays
 from service.process.installation import installation_id
 from service.process.single_instance import exclusive
 from service.process.termination import Termination
+from service.recording_store.errors import StoreError
+from service.recording_store.opening import open_store
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect, migrate
 from service.storage.answering import answering
@@ -71,10 +73,13 @@ def _serve(settings: Settings, settings_file: Path | None, termination: Terminat
     with exclusive(settings.data_directory / "service.lock", wait=False), listening(settings) as listener:
         repository = _prepared(settings, plant)
         termination.step()
-        store = RecordingStore(settings.recordings_directory, installation_id(settings.data_directory))
+        store = _opened_store(settings)
         store.discard_incoming()
         jobs, parts = _parts(settings, settings_file, plant, repository, store, termination)
-        room = {"disk": partial(disk_problem, _written(settings))}
+        room: dict[str, Problem] = {
+            "disk": partial(disk_problem, _written(settings, store)),
+            "recordings": store.problem,
+        }
         readiness = room | {name: part.problem for name, part in parts.items()}
         context = ApiContext(
             settings,
@@ -211,7 +216,7 @@ def _parts(
         restart_delay_s=RESTART_POLICY.backoff.longest_s,
         compute=jobs.compute,
         settings_file=settings_file,
-        directories=_written(settings),
+        directories=_written(settings, store),
     )
     notifications = NotificationWork(
         settings, repository, installation=installation_id(settings.data_directory)
@@ -219,9 +224,17 @@ def _parts(
     return jobs, {"collector": gateways, "jobs": jobs, **workers, "notifications": notifications}
 
 
-def _written(settings: Settings) -> list[Path]:
+def _opened_store(settings: Settings) -> RecordingStore:
+    """Open the store of the recordings as this service. Raises ServeError, OSError."""
+    try:
+        return open_store(settings, installation_id(settings.data_directory))
+    except StoreError as error:
+        raise ServeError(str(error)) from error
+
+
+def _written(settings: Settings, store: RecordingStore) -> list[Path]:
     """The directories that the service writes to; uploads and downloads pass through the last one."""
-    return list(dict.fromkeys((settings.data_directory, settings.recordings_directory, Path(gettempdir()))))
+    return list(dict.fromkeys((settings.data_directory, *store.written, Path(gettempdir()))))
 
 
 def require_writable(directory: Path) -> None:

@@ -15,7 +15,9 @@ from service.condition.motor_data import document_of
 from service.configuration.settings import Settings
 from service.process.installation import installation_id
 from service.process.single_instance import exclusive
-from service.recording_store.store import RecordingStore, RecordingStoreError
+from service.recording_store.errors import RecordingStoreError, StoreError
+from service.recording_store.opening import SHARE_THEM, open_shared_store
+from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect
 from service.storage.answering import answering
 from service.storage.database_url import parsed_url
@@ -83,25 +85,24 @@ def require_same_motors(repository: Repository, motors: Mapping[str, Motor]) -> 
 
 def _shared_store(settings: Settings, repository: Repository) -> RecordingStore:
     """Open the service's recordings. Raises ServeError where they cannot be read here."""
-    root = settings.recordings_directory
-    cure = "mount the folder in which the service keeps them (setting recordings_directory)"
-    if not root.is_dir() or not any(root.iterdir()):
-        raise ServeError(f"{root}: expected the recordings of the service, found none: {cure}")
-    store = RecordingStore(root, installation_id(settings.data_directory))
+    try:
+        store = open_shared_store(settings, installation_id(settings.data_directory))
+    except StoreError as error:
+        raise ServeError(str(error)) from error
     digests = [one.digest for one in repository.recordings(limit=LATEST).items if one.digest is not None]
     if digests:
-        _require_one_of(store, digests, cure)
+        _require_one_of(store, digests)
     return store
 
 
-def _require_one_of(store: RecordingStore, digests: list[str], cure: str) -> None:
+def _require_one_of(store: RecordingStore, digests: list[str]) -> None:
     """Raise ServeError where none of these recordings can be read; some may have been deleted meanwhile."""
     for digest in digests:
         try:
-            with store.entry(digest).open("rb") as file:
+            with store.opened(digest) as entry, entry.open("rb") as file:
                 file.read(1)
         except (RecordingStoreError, OSError) as error:
             problem = error
         else:
             return
-    raise ServeError(f"{store.root}: expected the recordings of the service, found: {problem}; {cure}")
+    raise ServeError(f"{store.place}: expected the recordings of the service, found: {problem}; {SHARE_THEM}")

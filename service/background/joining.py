@@ -7,7 +7,6 @@ because it follows from its parts already. Of the rotor it tells in their place,
 
 from collections.abc import Mapping
 from concurrent.futures import TimeoutError as NoAnswerInTimeError
-from pathlib import PurePath
 from typing import Final
 
 import structlog
@@ -16,7 +15,8 @@ from core.operation import Operation
 from core.time_stamps import rfc3339
 from core.units import NANOSECONDS_PER_SECOND
 from service.background.joined_files import JoinedFile, JoinTask, NotJoined, join_files
-from service.recording_store.store import RecordingStore, RecordingStoreError
+from service.recording_store.errors import RecordingStoreError
+from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from service.storage.errors import FolderGoneError
 from service.storage.records import Series, SeriesEnd
@@ -72,11 +72,11 @@ class SeriesJoiner:
             self._repository.leave_unjoined(series, f"not joined: {_end(series.ended_by)}")
             return
         try:
-            entries = tuple(self._store.entry(digest) for digest in series.digests)
+            sources = tuple(self._store.source(digest) for digest in series.digests)
         except RecordingStoreError as error:
             self._repository.leave_unjoined(series, str(error))
             return
-        task = JoinTask(entries, series.recorded_ns, self._time_zones.get(series.motor))
+        task = JoinTask(sources, series.recorded_ns, self._time_zones.get(series.motor))
         try:
             joined = self._compute(join_files, task).result(ANSWER_TIMEOUT_S)
         except (NoAnswerError, NoAnswerInTimeError) as error:
@@ -87,10 +87,10 @@ class SeriesJoiner:
                 self._repository.leave_unjoined(series, reason)
                 log.warning("series not joined", motor=series.motor, reason=reason)
             case JoinedFile():
-                self._keep(series, joined, entries[joined.parts[0]], now_ns)
+                self._keep(series, joined, now_ns)
 
-    def _keep(self, series: Series, joined: JoinedFile, first: PurePath, now_ns: int) -> None:
-        stored = self._store.store({f"{first.stem}_{len(joined.parts)}.CFF": joined.content})
+    def _keep(self, series: Series, joined: JoinedFile, now_ns: int) -> None:
+        stored = self._store.store({f"{joined.name}_{len(joined.parts)}.CFF": joined.content})
         reasons = list(joined.refusals)
         if series.ended_by is not None:
             reasons.append(f"shorter than asked for: {_end(series.ended_by)}")

@@ -7,7 +7,6 @@ import structlog
 from core.units import NANOSECONDS_PER_DAY, NANOSECONDS_PER_SECOND
 from service.configuration.settings import Settings
 from service.recording_store.store import RecordingStore
-from service.recording_store.unknown_folders import UnknownFolders
 from service.retention.batches import Batches
 from service.retention.deletion import remove_discarded_folders
 from service.retention.rules import Rule, rules
@@ -39,7 +38,7 @@ class Retention:
         self._store = store
         self._stopping = stopping or Event()
         self._clock = WallClock()
-        self._sweep = UnknownFolderSweep(repository, UnknownFolders(store.root))
+        self._sweep = UnknownFolderSweep(repository, store.unknown)
         self._left: list[Rule] = []
         self._next_ns: int | None = None
 

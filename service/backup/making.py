@@ -39,7 +39,7 @@ from service.backup.postgresql_database import copy_postgresql
 from service.backup.pruning import prune
 from service.backup.recording_copy import copy_recording, files_of
 from service.backup.sqlite_database import copy_sqlite
-from service.recording_store.store import StoredFile, content_directory
+from service.recording_store.contents import StoredFile, content_directory
 from service.storage.database_url import parsed_url
 
 MOST_COPIES = 5

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from service.backup.layout import POOL, backups_in
 from service.backup.manifest import read_sums
-from service.recording_store.store import is_digest
+from service.recording_store.contents import is_digest
 
 
 def prune(directory: Path, keep: int) -> tuple[str, ...]:

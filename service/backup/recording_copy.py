@@ -12,13 +12,8 @@ from pathlib import Path
 
 from service.backup.errors import BackupError
 from service.backup.layout import CHUNK_BYTES, PRIVATE_FOLDER, create, hash_of, opened
-from service.recording_store.store import (
-    RecordingStoreError,
-    StoredFile,
-    content_directory,
-    manifest_digest,
-    safe_name,
-)
+from service.recording_store.contents import StoredFile, content_directory, manifest_digest, safe_name
+from service.recording_store.errors import RecordingStoreError
 
 MOST_FILES = 100
 """A record has two or three."""

@@ -24,7 +24,7 @@ from service.backup.recording_copy import copy_recording, files_of
 from service.backup.sqlite_database import SqlitePlace
 from service.backup.verification import Verified, found_backup, verified
 from service.process.single_instance import exclusive
-from service.recording_store.store import content_directory
+from service.recording_store.contents import content_directory
 from service.storage import migrations
 from service.storage.database_url import parsed_url
 

@@ -19,7 +19,7 @@ from service.backup.layout import (
 )
 from service.backup.manifest import Manifest, read_manifest, read_sums
 from service.backup.sqlite_reading import digests_of, sqlite_opened
-from service.recording_store.store import StoredFile, manifest_digest
+from service.recording_store.contents import StoredFile, manifest_digest
 
 MOST_TOLD = 20
 """Problems that a message names."""

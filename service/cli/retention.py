@@ -15,8 +15,9 @@ from service.cli.audit.actor import command_line_actor
 from service.cli.output import failing_clearly, print_document, progress, results
 from service.client.tables import FittedTable
 from service.configuration.settings import Settings, SettingsError
+from service.recording_store.opening import open_store
 from service.recording_store.store import RecordingStore
-from service.recording_store.unknown_folders import APART, Folder, UnknownFolders
+from service.recording_store.unknown_folders import APART, Folder
 from service.retention.batches import Batches, Pace
 from service.retention.deletion import remove_discarded_folders
 from service.retention.reasons import WORDS
@@ -54,8 +55,9 @@ def apply_retention(config: Path | None, *, dry_run: bool, each: bool = False, a
         engine = connect(settings.database_url)
         try:
             repository = Repository(engine)
-            outcomes = _outcomes(settings, repository, dry_run=dry_run, each=each)
-            unknown = _unknown_folders(settings, repository, dry_run=dry_run)
+            store = open_store(settings, "retention")
+            outcomes = _outcomes(settings, repository, store, dry_run=dry_run, each=each)
+            unknown = _unknown_folders(store, repository, dry_run=dry_run)
         finally:
             engine.dispose()
     if as_json:
@@ -76,7 +78,9 @@ def apply_retention(config: Path | None, *, dry_run: bool, each: bool = False, a
         _print_unknown(unknown, dry_run=dry_run)
 
 
-def _outcomes(settings: Settings, repository: Repository, *, dry_run: bool, each: bool) -> list[Outcome]:
+def _outcomes(
+    settings: Settings, repository: Repository, store: RecordingStore, *, dry_run: bool, each: bool
+) -> list[Outcome]:
     outcomes = []
     batches = Batches(UNTIL_DONE)
     for rule in rules(settings, repository, time.time_ns(), command_line_actor()):
@@ -89,14 +93,14 @@ def _outcomes(settings: Settings, repository: Repository, *, dry_run: bool, each
             deleted = rule.forget(batches)
         outcomes.append(Outcome(rule, amount, deleted, listed))
     if not dry_run:
-        remove_discarded_folders(repository, RecordingStore(settings.recordings_directory, "retention"))
+        remove_discarded_folders(repository, store)
     return outcomes
 
 
-def _unknown_folders(settings: Settings, repository: Repository, *, dry_run: bool) -> list[Folder]:
+def _unknown_folders(store: RecordingStore, repository: Repository, *, dry_run: bool) -> list[Folder]:
     """Return the folders that the database does not know and, unless it is a dry run, move them apart."""
     now_s = time.time()
-    sweep = UnknownFolderSweep(repository, UnknownFolders(settings.recordings_directory))
+    sweep = UnknownFolderSweep(repository, store.unknown)
     unknown = sweep.unknown(now_s)
     if not dry_run:
         sweep.sweep(now_s)

@@ -18,6 +18,7 @@ from core.units import NANOSECONDS_PER_DAY
 from service.alarms.condition_rules import AT_ONCE, ConditionRules
 from service.condition.errors import RecordFoldError
 from service.condition.worker import FoldTask, ObserveTask, fold_motor, observe_recordings
+from service.recording_store.errors import StoreError
 from service.recording_store.store import RecordingStore
 from service.storage.repository import Repository
 from service.storage.transaction_limits import USUAL, TransactionLimits
@@ -244,6 +245,8 @@ class ConditionWork:
         trouble.failures += 1
         trouble.until_s = time.monotonic() + FAILURES.pause_s(trouble.failures)
         log.error("work on a condition failed, trying again", motor=task.motor, exc_info=error)
+        if isinstance(error, StoreError):  # the place of all recordings: none of them is at fault
+            return
         if isinstance(task.argument, ObserveTask) and trouble.failures >= MOST_FAILURES:
             (recording, *_) = task.argument.recordings
             log.error("recording is left out of the condition", recording=recording.recording_id)

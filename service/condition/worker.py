@@ -17,7 +17,8 @@ from core.machines.parameters import Motor
 from core.recordings import RecordingError, read
 from service.alarms.condition_rules import AT_ONCE, ConditionRules
 from service.condition.record_times import ImpossibleTimeError, require_possible_time
-from service.recording_store.store import RecordingStore, RecordingStoreError
+from service.recording_store.errors import RecordingStoreError
+from service.recording_store.store import RecordingStore
 from service.storage.engine import connect
 from service.storage.records import ToObserve
 from service.storage.repository import Repository
@@ -97,7 +98,7 @@ def fold_due(
 def observe_recordings(task: ObserveTask) -> int:
     """Observe recordings that were diagnosed before there were observations; return how many.
 
-    Raises SQLAlchemyError.
+    Raises SQLAlchemyError, OSError.
     """
     repository = _repository(task.database_url, task.limits)
     return repository.add_observations(list(_observed(task)))
@@ -110,7 +111,8 @@ def _observed(task: ObserveTask) -> Iterator[tuple[str, Observation | None]]:
     end_s = monotonic() + ROUND_S
     for one in task.recordings:
         try:
-            recording = read(task.store.entry(one.digest), most_values=MOST_VALUES)
+            with task.store.opened(one.digest) as entry:
+                recording = read(entry, most_values=MOST_VALUES)
             observation = observe(recording, task.motor)
             if observation is not None:
                 # The file may have local time; its diagnosis found out the UTC.

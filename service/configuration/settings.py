@@ -22,6 +22,7 @@ from service.configuration.backup import BackupSettings
 from service.configuration.channels import CHANNEL_PATHS, MailChannel
 from service.configuration.notifications import NotificationSettings
 from service.configuration.problems import ENVIRONMENT, ConfigurationError, Problem, Problems
+from service.configuration.recordings_url import BucketPlace
 from service.configuration.relay_access import AbsolutePath, RelayAccess
 from service.configuration.reports import ReportSettings
 from service.configuration.retention import MOST_DAYS, RetentionSettings
@@ -76,6 +77,7 @@ class Settings(BaseSettings):
     recordings_directory: AbsolutePath = Field(
         default_factory=lambda known: known["data_directory"] / "recordings"
     )
+    recordings_url: str | None = Field(default=None, max_length=2000)
     database_url: str = Field(default_factory=lambda known: sqlite_url(known["data_directory"]), repr=False)
 
     workers: int = Field(default=2, ge=1, le=256)
@@ -114,6 +116,21 @@ class Settings(BaseSettings):
     metering_quarter_hour_days: float = Field(default=3650.0, ge=0.01, le=MOST_DAYS)
     max_file_bytes: int = Field(default=64 * MIB, ge=1, le=GIB)
     max_relay_bytes_per_day: int = Field(default=GIB, ge=1, le=1024 * GIB)
+
+    @field_validator("recordings_url")
+    @classmethod
+    def _of_a_bucket(cls, url: str | None) -> str | None:
+        return None if url is None else str(BucketPlace.of(url))
+
+    @field_validator("backup")
+    @classmethod
+    def _of_a_folder(cls, backup: BackupSettings, info: ValidationInfo) -> BackupSettings:
+        if backup.directory is not None and info.data.get("recordings_url") is not None:
+            raise ValueError(
+                "no directory beside recordings_url: back-ups take recordings from a folder alone; back up"
+                " the database by its own tools and then the bucket"
+            )
+        return backup
 
     @field_validator("tls_key")
     @classmethod

@@ -11,7 +11,6 @@ import socket
 from collections.abc import Callable
 from concurrent.futures import CancelledError, Future
 from importlib.metadata import version
-from pathlib import Path
 from threading import Timer
 from types import TracebackType
 
@@ -20,6 +19,7 @@ from distributed import Client, LocalCluster
 from service.jobs.task import DiagnosisTask, Outcome
 from service.jobs.worker import diagnose_recording
 from service.jobs.workers import Argument, NoWorkersError, Result
+from service.recording_store.store import RecordingStore
 
 PACKAGES = ("statorwatch", "numpy", "scipy", "numba")
 """The same versions give the same results."""
@@ -63,10 +63,10 @@ class DaskWorkers:
         return cls(Client(cluster, set_as_default=False), "this machine", cluster)
 
     @classmethod
-    def of_scheduler(cls, address: str, recordings: Path) -> "DaskWorkers":
+    def of_scheduler(cls, address: str, store: RecordingStore) -> "DaskWorkers":
         """Use the workers of a running scheduler. Raises UnusableClusterError.
 
-        recordings: the folder that they have to see under the same path.
+        store: has the recordings, which they have to see as this host does.
         """
         _silence()
         try:
@@ -77,7 +77,7 @@ class DaskWorkers:
                 f"tcp://host:8786, found: {error}"
             ) from error
         try:
-            _require_fit(client, address, recordings)
+            _require_fit(client, address, store)
         except BaseException:
             client.close(timeout=CLOSE_TIMEOUT_S)
             raise
@@ -130,13 +130,13 @@ class DaskWorkers:
 
 
 def diagnose_shared_recording(task: DiagnosisTask) -> Outcome:
-    """Diagnose a recording as the service's own workers do. Raises FileNotFoundError.
+    """Diagnose a recording as the service's own workers do. Raises OSError.
 
     A file that this host does not see is no damaged recording: another host may see it.
     """
-    for path in (task.entry, *task.baseline):
-        if not path.exists():
-            raise FileNotFoundError(f"{path}: worker host {socket.gethostname()} does not see this file")
+    for source in (task.recording, *task.baseline):
+        if not source.is_seen_here():
+            raise FileNotFoundError(f"{source}: worker host {socket.gethostname()} does not see this file")
     return diagnose_recording(task)
 
 
@@ -151,7 +151,7 @@ def _within(timeout_s: float, function: Callable[[Argument], Result], task: Argu
         limit.cancel()
 
 
-def _require_fit(client: Client, address: str, recordings: Path) -> None:
+def _require_fit(client: Client, address: str, store: RecordingStore) -> None:
     """Raise UnusableClusterError where the workers cannot do what those of the service do."""
     threads = client.nthreads()
     if not threads:
@@ -170,11 +170,11 @@ def _require_fit(client: Client, address: str, recordings: Path) -> None:
                 f"worker {worker}: expected the software of this host, {', '.join(_software())}, found "
                 f"{', '.join(found)}: install the same there"
             )
-    for worker, sees in client.run(recordings.is_dir).items():
-        if not sees:
+    for worker, problem in client.run(store.problem).items():
+        if problem is not None:
             raise UnusableClusterError(
-                f"worker {worker}: expected the folder {recordings}, found none: mount it there under this "
-                "path"
+                f"worker {worker}: expected the recordings in {store.place}, found: {problem}; it needs the "
+                "same path, or the same store with an endpoint and credentials of its own"
             )
 
 

@@ -2,6 +2,7 @@
 
 import os
 import socket
+import sys
 import time
 import uuid
 from collections import deque
@@ -26,7 +27,8 @@ from service.jobs.task import Diagnosed, DiagnosisTask, Outcome, Rejected, Task
 from service.jobs.worker_pool import WorkerPool
 from service.jobs.worker_process import follow_service
 from service.jobs.workers import NoWorkersError, Workers
-from service.recording_store.store import RecordingStore, RecordingStoreError
+from service.recording_store.errors import RecordingStoreError, StoreUnreachableError
+from service.recording_store.store import RecordingStore
 from service.storage.errors import NotFoundError, RunnerEndedError, UnstorableDiagnosisError
 from service.storage.records import ClaimedJob, JobRunnerPlace
 from service.storage.repository import Repository
@@ -84,7 +86,7 @@ class JobRunner:
         self._renew_at_s = 0.0
         self._pool = workers or WorkerPool(limits.workers, prepare_worker, is_ending)
         self._pool_problem: str | None = None
-        self._folder_is_gone = False
+        self._has_no_store = False
         self._in_flight: dict[str, Future[Outcome]] = {}
         self._may_hold_unknown_jobs = False
         self._results: deque[tuple[ClaimedJob, Future[Outcome]]] = deque()
@@ -147,12 +149,10 @@ class JobRunner:
 
     def _store_problem(self) -> str | None:
         """Return why no recording can be read. Jobs wait meanwhile; none of their recordings is at fault."""
-        was_gone, self._folder_is_gone = self._folder_is_gone, not self._store.is_there()
-        if not self._folder_is_gone:
-            return None
-        problem = f"{self._store.root}: expected the folder of the recordings, found none: is it mounted?"
-        if not was_gone:
-            log.warning("jobs wait for the folder of the recordings", reason=problem)
+        problem = self._store.problem()
+        had_none, self._has_no_store = self._has_no_store, problem is not None
+        if problem is not None and not had_none:
+            log.warning("jobs wait for the recordings", reason=problem)
         return problem
 
     def _has_free_worker(self) -> bool:
@@ -247,8 +247,8 @@ class JobRunner:
             self._repository.reject_recording(job.id, reason, now_ns=time.time_ns(), runner=self._id)
             return True
         try:
-            entry = self._store.entry(claimed.digest)
-            baseline = tuple(self._store.entry(digest) for digest in claimed.baseline)
+            recording = self._store.source(claimed.digest)
+            baseline = tuple(self._store.source(digest) for digest in claimed.baseline)
         except (RecordingStoreError, OSError) as error:
             if self._store_problem() is not None:  # it was there before this claim
                 self._release(job.id)
@@ -259,7 +259,7 @@ class JobRunner:
                 self._retry(claimed, str(error))
             return True
         task = DiagnosisTask(
-            entry,
+            recording,
             motor,
             job.method,
             job.model,
@@ -307,6 +307,8 @@ class JobRunner:
             self._repository.release_job(claimed.job.id, runner=self._id)
         elif error is None:
             self._keep(claimed, future.result())
+        elif isinstance(error, StoreUnreachableError):  # the place of all recordings, only now and then
+            self._retry(claimed, str(error), max_attempts=sys.maxsize)
         elif isinstance(error, TimeoutError):
             self._retry(claimed, f"took longer than {self._limits.job_timeout_s:g} s")
         elif isinstance(error, ProcessExpired):
@@ -392,14 +394,17 @@ class JobRunner:
                     operation=None if diagnosis.operation is None else str(diagnosis.operation),
                 )
 
-    def _retry(self, claimed: ClaimedJob, error: str) -> None:
-        """Queue a job again, or give it up after its last attempt. Raises SQLAlchemyError."""
+    def _retry(self, claimed: ClaimedJob, error: str, *, max_attempts: int | None = None) -> None:
+        """Queue a job again, or give it up after its last attempt. Raises SQLAlchemyError.
+
+        max_attempts: by default as the limits say.
+        """
         error = storable(error)
         state = self._repository.retry_or_fail_job(
             claimed.job.id,
             error,
             now_ns=time.time_ns(),
-            max_attempts=self._limits.attempts,
+            max_attempts=max_attempts or self._limits.attempts,
             backoff=self._limits.backoff,
             runner=self._id,
         )

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 
 from core.classification.classification import Classification
 from core.condition.observation import Observation
@@ -11,23 +10,24 @@ from core.machines.parameters import Motor
 from core.rotor.finding import RotorFinding
 from core.starts.examined import ExaminedStart
 from core.supply.figures import SupplyFigures
+from service.recording_store.recording import Source
 from service.storage.records import RecordLength
 
 
 @dataclass(frozen=True, slots=True)
 class DiagnosisTask:
-    """Name a recording to diagnose, by the file a reader starts from, its motor, and how to do it.
+    """Name a recording to diagnose, its motor, and how to do it.
 
-    baseline: files of the motor's healthy recordings, whose standing asymmetry is taken off; or none.
+    baseline: the motor's healthy recordings, whose standing asymmetry is taken off; or none.
     time_zone: IANA name of the zone in which the relay's clock runs; None for UTC.
     near_ns: UTC near which the record was made: its trigger, or else when it was first seen [ns].
     """
 
-    entry: Path
+    recording: Source
     motor: Motor
     method: str
     model: str
-    baseline: tuple[Path, ...] = ()
+    baseline: tuple[Source, ...] = ()
     time_zone: str | None = None
     near_ns: int | None = None
 

@@ -16,6 +16,7 @@ from core.recordings.local_time import in_utc
 from service.condition.healthy_records import MOST_VALUES, learnt
 from service.jobs.task import Diagnosed, DiagnosisTask, Outcome, Rejected
 from service.jobs.worker_process import follow_service
+from service.recording_store.errors import RecordingStoreError
 from service.storage.records import RecordLength
 
 if TYPE_CHECKING:
@@ -31,12 +32,16 @@ def prepare_worker() -> None:
 
 
 def diagnose_recording(task: DiagnosisTask) -> Outcome:
-    """Read and diagnose one recording; what would fail again is an outcome, not an error."""
+    """Read and diagnose one recording; what would fail again is an outcome, not an error.
+
+    Raises OSError where it cannot be had for now.
+    """
     from core.classification.record import classify_record
     from core.condition.measuring.observing import examine
 
     try:
-        recording = read(task.entry, most_values=MOST_VALUES)
+        with task.recording.opened() as entry:
+            recording = read(entry, most_values=MOST_VALUES)
         if task.time_zone is not None:
             recording = in_utc(recording, ZoneInfo(task.time_zone), task.near_ns)
         examined = examine(
@@ -46,7 +51,7 @@ def diagnose_recording(task: DiagnosisTask) -> Outcome:
             model=task.model,
             baseline=learnt(task.baseline, task.motor) if task.baseline else None,
         )
-    except (RecordingError, DiagnosisError) as error:
+    except (RecordingError, DiagnosisError, RecordingStoreError) as error:
         return Rejected(str(error))
     remark, start = None, None
     if examined.diagnosis.operation is Operation.START:

@@ -1,17 +1,18 @@
 """Folders that the database does not know, moved out of the way.
 
-    <root>/unknown/<digest>/...
+    <place>/unknown/<digest>/...
 
 They are kept there for a while: whoever starts the service with the wrong database, or with an old back-up of
-it, gets them back. Moving a folder is one step, so that a crash leaves it in one place or the other.
+it, gets them back.
 """
 
 import shutil
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Protocol
 
-from service.recording_store.store import content_directory, is_digest
+from service.recording_store.contents import content_directory, is_digest
 
 PREFIXES = tuple(f"{number:02x}" for number in range(256))
 """The folders of the store that hold those named by their content."""
@@ -28,12 +29,45 @@ class Folder:
     size_bytes: int
 
 
-class UnknownFolders:
-    """The folders below `root`, those known to the database and those moved out of the way."""
+class UnknownFolders(Protocol):
+    """The folders of a store, those known to the database and those moved out of the way."""
+
+    @property
+    def apart(self) -> str:
+        """Return where those are that were moved out of the way, for people."""
+        ...
+
+    def stored(self, prefix: str) -> Iterator[Folder]:
+        """Yield the folders whose digest begins so."""
+        ...
+
+    def set_apart(self) -> Iterator[Folder]:
+        """Yield the folders that were moved out of the way."""
+        ...
+
+    def move_apart(self, digest: str) -> None:
+        """Move a folder out of the way. Raises FileNotFoundError (it is gone), OSError."""
+        ...
+
+    def put_back(self, digest: str) -> None:
+        """Move a folder back to its place, where the same content may be by now. Raises OSError."""
+        ...
+
+    def remove(self, digest: str) -> None:
+        """Delete a folder that was moved out of the way. Raises OSError."""
+        ...
+
+
+class FolderUnknownFolders:
+    """Folders below `root`. Moving one is one step: a crash leaves it in one place or the other."""
 
     def __init__(self, root: Path) -> None:
         self._root = root
-        self.apart = root / APART
+        self._apart = root / APART
+
+    @property
+    def apart(self) -> str:
+        return str(self._apart)
 
     def stored(self, prefix: str) -> Iterator[Folder]:
         """Yield the folders whose digest begins so."""
@@ -41,28 +75,28 @@ class UnknownFolders:
 
     def set_apart(self) -> Iterator[Folder]:
         """Yield the folders that were moved out of the way."""
-        return _folders(self.apart)
+        return _folders(self._apart)
 
     def move_apart(self, digest: str) -> None:
         """Move a folder out of the way. Raises FileNotFoundError (it is gone), OSError."""
         directory = content_directory(self._root, digest)
         directory.stat()
-        self.apart.mkdir(exist_ok=True)
-        shutil.rmtree(self.apart / digest, ignore_errors=True)  # the same content, from an earlier time
-        directory.rename(self.apart / digest)
+        self._apart.mkdir(exist_ok=True)
+        shutil.rmtree(self._apart / digest, ignore_errors=True)  # the same content, from an earlier time
+        directory.rename(self._apart / digest)
 
     def put_back(self, digest: str) -> None:
         """Move a folder back to its place, where the same content may be by now. Raises OSError."""
         directory = content_directory(self._root, digest)
         if directory.is_dir():
-            shutil.rmtree(self.apart / digest)
+            shutil.rmtree(self._apart / digest)
             return
         directory.parent.mkdir(exist_ok=True)
-        (self.apart / digest).rename(directory)
+        (self._apart / digest).rename(directory)
 
     def remove(self, digest: str) -> None:
         """Delete a folder that was moved out of the way. Raises OSError."""
-        shutil.rmtree(self.apart / digest)
+        shutil.rmtree(self._apart / digest)
 
 
 def _folders(directory: Path) -> Iterator[Folder]:

@@ -81,7 +81,7 @@ class UnknownFolderSweep:
             log.warning(
                 "the database does not know a folder of the recording store: moved apart",
                 folder=folder.digest,
-                to=str(self._folders.apart),
+                to=self._folders.apart,
                 size_bytes=folder.size_bytes,
                 deleted_after_days=self._ages.kept_days,
             )

@@ -14,6 +14,8 @@ from service.configuration.settings import Settings
 from service.notifications.checking import channel_problems, report_problems, route_problems, warnings
 from service.plant import Plant
 from service.plant.files import examine_plant
+from service.recording_store.errors import StoreError
+from service.recording_store.opening import own_folders, require_usable
 from service.storage import StorageError, connect
 
 
@@ -42,6 +44,7 @@ def check(config: Path | None) -> CheckedPlant:
     source = "settings" if config is None else str(config)
     problems.extend(_database(settings, source))
     problems.extend(_directories(settings, source))
+    problems.extend(_recordings(settings, source))
     problems.extend(channel_problems(settings.notifications, source))
     if plant is not None:
         sites = [site.name for site in plant.sites]
@@ -72,13 +75,21 @@ def _database(settings: Settings, source: str) -> list[Problem]:
 def _directories(settings: Settings, source: str) -> list[Problem]:
     """Return the folders that cannot be made or written to."""
     problems = []
-    for name in ("data_directory", "recordings_directory"):
-        folder: Path = getattr(settings, name)
+    for name, folder in {"data_directory": settings.data_directory, **own_folders(settings)}.items():
         existing = next(each for each in (folder, *folder.parents) if each.exists())
         if not existing.is_dir() or not os.access(existing, os.W_OK):
             expected = f"a folder that user {os.getuid()} may write to"
             problems.append(Problem(source, name, expected, f"{existing}, which is none"))
     return problems
+
+
+def _recordings(settings: Settings, source: str) -> list[Problem]:
+    """Return why the store of the recordings cannot be used. An S3-compatible store itself is not asked."""
+    try:
+        require_usable(settings)
+    except StoreError as error:
+        return [_of_text(source, "recordings_url", str(error))]
+    return []
 
 
 def _credentials(settings: Settings, relay: str) -> list[Problem]:

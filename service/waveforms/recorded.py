@@ -37,11 +37,13 @@ class Recorded:
 
     def open(self, entry: RecordingEntry) -> Opened:
         """Read a recording. Raises NotStoredError, RecordingStoreError, RecordingError, OSError."""
-        return opened(self.store.entry(digest_of(entry)), self.motor_of(entry))
+        with self.store.opened(digest_of(entry)) as file:
+            return opened(file, self.motor_of(entry))
 
     def envelope(self, entry: RecordingEntry, intervals: int) -> Envelope:
         """Read the envelope of a recording of any length. Raises as `open`."""
-        return read_envelope(self.store.entry(digest_of(entry)), lambda _, samples: min(intervals, samples))
+        with self.store.opened(digest_of(entry)) as file:
+            return read_envelope(file, lambda _, samples: min(intervals, samples))
 
     def motor_of(self, entry: RecordingEntry) -> Motor | None:
         """Return the motor as it was when it was recorded; None where the plant's files have it no more."""
@@ -84,11 +86,11 @@ class Recorded:
         relative = isinstance(reasons, list) and is_relative(str(reason) for reason in reasons)
         healthy = self.repository.baseline(entry.motor).recordings if relative else ()
         return ReplayTask(
-            entry=self.store.entry(digest_of(entry)),
+            recording=self.store.source(digest_of(entry)),
             motor=motor,
             model=str(document["model"]),
             fit=FittedParameters(**fit),
-            baseline=tuple(self.store.entry(digest_of(one)) for one in healthy),
+            baseline=tuple(self.store.source(digest_of(one)) for one in healthy),
             currents_only=document.get("currents_only") is True,
         )
 

@@ -1,7 +1,6 @@
 """Draw the currents of a diagnosis again, in a worker process."""
 
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,17 +9,19 @@ from core.diagnosis.verdict import FittedParameters
 from core.machines.parameters import Motor
 from core.recordings import RecordingError, read
 from service.condition.healthy_records import MOST_VALUES, learnt
+from service.recording_store.errors import RecordingStoreError
+from service.recording_store.recording import Source
 
 
 @dataclass(frozen=True, slots=True)
 class ReplayTask:
-    """Name a diagnosis to draw again: its file, motor, model and fit, and the files of its baseline."""
+    """Name a diagnosis to draw again: its recording, motor, model and fit, and its baseline."""
 
-    entry: Path
+    recording: Source
     motor: Motor
     model: str
     fit: FittedParameters
-    baseline: tuple[Path, ...] = ()
+    baseline: tuple[Source, ...] = ()
     currents_only: bool = False
 
 
@@ -48,7 +49,8 @@ def replay_recording(task: ReplayTask) -> Replayed | NotReplayed:
     from core.diagnosis.replay import replay
 
     try:
-        recording = read(task.entry, most_values=MOST_VALUES)
+        with task.recording.opened() as entry:
+            recording = read(entry, most_values=MOST_VALUES)
         drawn = replay(
             recording,
             task.motor,
@@ -57,7 +59,7 @@ def replay_recording(task: ReplayTask) -> Replayed | NotReplayed:
             baseline=learnt(task.baseline, task.motor) if task.baseline else None,
             currents_only=task.currents_only,
         )
-    except (RecordingError, DiagnosisError, OSError) as error:
+    except (RecordingError, DiagnosisError, RecordingStoreError, OSError) as error:
         return NotReplayed(str(error))
     return Replayed(
         first_s=drawn.first_s,

@@ -12,6 +12,7 @@ from service.condition.motor_data import document_of
 from service.configuration.settings import Settings
 from service.demo import MOTORS
 from service.plant import Plant, read_plant
+from service.recording_store.opening import open_store
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect
 from testing.machines.phase_circuits import Fault
@@ -42,7 +43,7 @@ class Archive:
 
     @property
     def store(self) -> RecordingStore:
-        return RecordingStore(self.settings.recordings_directory)
+        return open_store(self.settings)
 
     def documents(self) -> list[str]:
         """What is stored of each recording as JSON, but for the time that its computation took."""
@@ -56,14 +57,19 @@ class Archive:
         return [sum(one.diagnosis is not None for one in of) - 1 for of in jobs]
 
 
-def make_archive(directory: Path, records: int) -> Archive:
-    """Store records of one motor, most with shorted turns, and diagnose all as healthy."""
+def make_archive(directory: Path, records: int, recordings_url: str | None = None) -> Archive:
+    """Store records of one motor, most with shorted turns, and diagnose all as healthy.
+
+    recordings_url: of a bucket that has them; None for the folder of the data directory.
+    """
     config = directory / "mcc.toml"
     data = directory / "data"
     data.mkdir()
     config.write_text(
         f'data_directory = "data"\nscd = "{switched_off_plant(directory).name}"\nmotors = "{MOTORS}"\n'
     )
+    if recordings_url is not None:
+        config.write_text(config.read_text() + f'recordings_url = "{recordings_url}"\n')
     settings = Settings.load(config)
     engine = connect(make_database(data))
     repository = Repository(engine)
@@ -71,7 +77,7 @@ def make_archive(directory: Path, records: int) -> Archive:
     repository.sync_plant(plant)
     repository.note_motors({one.name: document_of(one.motor) for one in plant.motors}, now_ns=NOW_NS)
     repository.register_runner(RUNNER, installation="tests", now_ns=NOW_NS, max_attempts=3)
-    store = RecordingStore(settings.recordings_directory)
+    store = open_store(settings)
     ids = []
     for k in range(records):
         begin_ns = NOW_NS + k * SECOND_NS

@@ -65,7 +65,7 @@ def add_recording(
         return added.id
     claimed = repository.claim_job(now_ns=now_ns, runner=RUNNER)
     assert claimed is not None
-    task = DiagnosisTask(store.entry(stored.digest), motor, claimed.job.method, claimed.job.model)
+    task = DiagnosisTask(store.source(stored.digest), motor, claimed.job.method, claimed.job.model)
     outcome = diagnose_recording(task)
     assert isinstance(outcome, Diagnosed), outcome
     repository.finish_job(

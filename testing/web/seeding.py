@@ -29,6 +29,8 @@ from service.jobs.task import Diagnosed, DiagnosisTask
 from service.jobs.worker import diagnose_recording
 from service.plant import Plant
 from service.plant.files import plant_of_files
+from service.recording_store.folder import FolderStore
+from service.recording_store.recording import LocalFile
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect
 from service.storage.records import Actor, RelayFindings, Role, Sample
@@ -123,7 +125,7 @@ class _Seeding:
         moved = replace(recording, start_time_ns=start_ns + time_ns - trigger_ns)
         entry = comtrade.write(folder / f"{name}.CFG", moved)
         found = diagnose_recording(
-            DiagnosisTask(entry, self.motor(motor), method="hcpa", model="split-winding", near_ns=time_ns)
+            DiagnosisTask(LocalFile(entry), self.motor(motor), "hcpa", "split-winding", near_ns=time_ns)
         )
         assert isinstance(found, Diagnosed), found
         files = {path.name: path.read_bytes() for path in folder.glob(f"{name}.*")}
@@ -160,7 +162,7 @@ def seed(data: Path, *, now_ns: int | None = None) -> str:
     repository.sync_plant(plant, noted_ns=began_ns)
     register_runner(repository)
     repository.note_motors({one.name: document_of(one.motor) for one in plant.motors}, now_ns=began_ns)
-    seeding = _Seeding(repository, RecordingStore(data / "recordings"), plant, now_ns)
+    seeding = _Seeding(repository, FolderStore(data / "recordings"), plant, now_ns)
     _seed_motors(seeding, data)
     _seed_relays(seeding)
     repository.settle_alarms(now_ns=now_ns)

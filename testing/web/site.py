@@ -15,7 +15,7 @@ from service.api.access.cookies import NAME
 from service.api.context import ApiContext
 from service.api.server import connection_limits
 from service.configuration.settings import Settings, sqlite_url
-from service.recording_store.store import RecordingStore
+from service.recording_store.folder import FolderStore
 from service.storage import Repository, connect
 from service.storage.errors import UserExistsError
 from service.storage.records import Actor, Role
@@ -124,7 +124,7 @@ def running_site(
     context = ApiContext(
         Settings(data_directory=data, **settings),  # type: ignore[arg-type]  # names of its fields
         Repository(engine),
-        RecordingStore(data / "recordings"),
+        FolderStore(data / "recordings"),
         motors=dict(motors or {}),
     )
     try:

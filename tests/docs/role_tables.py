@@ -10,7 +10,7 @@ from service.access.permissions import MEANINGS, PERMISSIONS_OF, Permission
 from service.api import ApiContext
 from service.api.access.requirements import requirement_of
 from service.configuration.settings import Settings
-from service.recording_store.store import RecordingStore
+from service.recording_store.folder import FolderStore
 from service.storage import Repository, connect
 from service.storage.records import Role
 from service.web.app import create_site
@@ -65,7 +65,7 @@ def _routes(*, of_pages: bool) -> Iterator[tuple[str, str, Permission | None]]:
     with tempfile.TemporaryDirectory() as name:
         directory = Path(name)
         repository = Repository(connect(f"sqlite:///{directory / 'unused.sqlite'}"))
-        store = RecordingStore(directory / "recordings")
+        store = FolderStore(directory / "recordings")
         site = create_site(ApiContext(Settings(data_directory=directory), repository, store))
         for route in iter_route_contexts(site.routes):
             if is_page(str(route.path)) is not of_pages:

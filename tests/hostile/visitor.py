@@ -22,7 +22,8 @@ from mms import (
 )
 from service.collector.records.listing import FolderListing, understand
 from service.collector.records.pull import pull
-from service.recording_store.store import RecordingStore, RecordingStoreError
+from service.recording_store.errors import RecordingStoreError
+from service.recording_store.folder import FolderStore
 from testing.ports import LOOPBACK
 from tests.hostile.dialogue import CON, PRO
 
@@ -38,7 +39,7 @@ class Visitor:
     def __init__(self, port: int, seed: str, directory: Path) -> None:
         self._port = port
         self._chance = Random(seed)
-        self._store = RecordingStore(directory / "recordings")
+        self._store = FolderStore(directory / "recordings")
         self._reports: queue.SimpleQueue[Report] = queue.SimpleQueue()
 
     def visit(self) -> None:

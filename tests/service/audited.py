@@ -17,6 +17,7 @@ from service.api import ApiContext
 from service.configuration.channels import Channel, CommandChannel
 from service.configuration.notifications import NotificationSettings
 from service.configuration.settings import Settings
+from service.recording_store.folder import FolderStore
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect
 from service.storage.records import SERVICE, Alarm
@@ -149,7 +150,7 @@ def audited_service(data: Path, create: Callable[[ApiContext], FastAPI]) -> Iter
     repository = Repository(engine)
     repository.sync_plant(two_motor_plant())
     register_runner(repository)
-    store = RecordingStore(data / "recordings")
+    store = FolderStore(data / "recordings")
     channels: dict[str, Channel] = {"hook": CommandChannel(kind="command", command=("/bin/true",))}
     settings = Settings(data_directory=data, notifications=NotificationSettings(channels=channels))
     motors = {one.motor.name: one.motor for one in two_motor_plant().motors}

@@ -9,7 +9,7 @@ from sqlalchemy import Engine, func, select
 from sqlalchemy.orm import Session
 
 from service.configuration.settings import sqlite_url
-from service.recording_store.store import RecordingStore
+from service.recording_store.folder import FolderStore
 from service.storage import Repository, connect, migrate
 from service.storage.models import (
     AlarmRow,
@@ -129,5 +129,5 @@ def standing_alarm_counts(engine: Engine) -> tuple[AlarmCounts, AlarmCounts]:
 
 
 @pytest.fixture
-def store(tmp_path: Path) -> RecordingStore:
-    return RecordingStore(tmp_path / "recordings")
+def store(tmp_path: Path) -> FolderStore:
+    return FolderStore(tmp_path / "recordings")

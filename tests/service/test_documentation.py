@@ -23,7 +23,7 @@ from service.configuration.notifications import Digest, NotificationSettings, Ro
 from service.configuration.retention import RetentionSettings
 from service.configuration.settings import Settings
 from service.plant import Overrides
-from service.recording_store.store import RecordingStore
+from service.recording_store.folder import FolderStore
 from service.storage import Repository, connect
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -121,7 +121,7 @@ def test_every_decision_about_a_relay_is_documented() -> None:
 def test_every_route_is_documented(tmp_path: Path) -> None:
     repository = Repository(connect(f"sqlite:///{tmp_path / 'unused.sqlite'}"))
     app = create_app(
-        ApiContext(Settings(data_directory=tmp_path), repository, RecordingStore(tmp_path / "recordings"))
+        ApiContext(Settings(data_directory=tmp_path), repository, FolderStore(tmp_path / "recordings"))
     )
     routes = {
         f"{method.upper()} {path}" for path, methods in app.openapi()["paths"].items() for method in methods

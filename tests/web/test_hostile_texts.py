@@ -11,7 +11,7 @@ from playwright.sync_api import Browser
 from core.condition.events import Event, EventKind
 from service.configuration.settings import sqlite_url
 from service.plant import Plant
-from service.recording_store.store import RecordingStore
+from service.recording_store.folder import FolderStore
 from service.storage import Repository, connect
 from service.storage.records import Actor, RelayFindings, Role
 from service.storage.states import AlarmKind, LinkState
@@ -50,7 +50,7 @@ def hostile(tmp_path_factory: pytest.TempPathFactory, browser: Browser) -> Itera
     data: Path = tmp_path_factory.mktemp("hostile")
     make_database(data)
     engine = connect(sqlite_url(data))
-    repository, store = Repository(engine), RecordingStore(data / "recordings")
+    repository, store = Repository(engine), FolderStore(data / "recordings")
     register_runner(repository)
     now_ns = time.time_ns()
     repository.sync_plant(hostile_plant(), noted_ns=now_ns)

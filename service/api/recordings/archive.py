@@ -6,7 +6,8 @@ import zipfile
 from collections.abc import Iterator
 
 from core.time_stamps import SECONDS_END, rfc3339
-from service.recording_store.store import StoredRecording
+from service.recording_store.recording import StoredRecording
+from service.recording_store.store import RecordingStore
 from service.storage.records import RecordingEntry
 
 CHUNK_BYTES = 1 << 16
@@ -25,12 +26,12 @@ def file_stem(recording: RecordingEntry) -> str:
     return f"{_UNSAFE.sub('_', recording.motor)}_{time}Z"
 
 
-def zipped(stored: StoredRecording) -> Iterator[bytes]:
-    """Return the archive piece by piece."""
+def zipped(store: RecordingStore, stored: StoredRecording) -> Iterator[bytes]:
+    """Return the archive piece by piece. Raises RecordingStoreError, OSError."""
     sink = _Sink()
-    with zipfile.ZipFile(sink, "w", zipfile.ZIP_DEFLATED) as archive:
+    with store.opened(stored.digest) as entry, zipfile.ZipFile(sink, "w", zipfile.ZIP_DEFLATED) as archive:
         for file in stored.files:
-            path = stored.directory / file.name
+            path = entry.with_name(file.name)
             about = zipfile.ZipInfo.from_file(path, arcname=file.name)
             about.compress_type = zipfile.ZIP_DEFLATED
             with path.open("rb") as source, archive.open(about, "w") as packed:

@@ -28,7 +28,9 @@ from service.api.recordings.listed import listed
 from service.api.recordings.schemas import ListedRecording, Recording, RecordingDetails, RecordingFile
 from service.api.recordings.waveform import MAX_POINTS, Waveform, WaveformResponse, intervals_within
 from service.exports import recordings as table
-from service.recording_store.store import WAVEFORM_SUFFIXES, RecordingStoreError, StoredRecording
+from service.recording_store.contents import WAVEFORM_SUFFIXES
+from service.recording_store.errors import RecordingStoreError
+from service.recording_store.recording import StoredRecording
 from service.retention.deletion import remove_discarded_folder_if_possible
 from service.storage.errors import FolderGoneError, TooManyWaitingError
 from service.storage.records import Actor, RecordingEntry
@@ -169,7 +171,7 @@ def download_recording(context: Context, recording_id: UUID) -> StreamingRespons
     entry = context.repository.recording(str(recording_id))
     stored = context.store.find(_digest(entry))
     return StreamingResponse(
-        zipped(stored),
+        zipped(context.store, stored),
         media_type="application/zip",
         headers={"Content-Disposition": f'attachment; filename="{file_stem(entry)}.zip"'},
     )
@@ -177,9 +179,10 @@ def download_recording(context: Context, recording_id: UUID) -> StreamingRespons
 
 def _envelope(context: ApiContext, recording_id: str, points: int) -> Envelope:
     entry = context.repository.recording(recording_id)
-    path = context.store.entry(_digest(entry))
+    within = intervals_within(points, context.settings.max_waveform_values)
     try:
-        envelope = read_envelope(path, intervals_within(points, context.settings.max_waveform_values))
+        with context.store.opened(_digest(entry)) as file:
+            envelope = read_envelope(file, within)
     except RecordingError as error:
         raise ProblemError(HTTPStatus.CONFLICT, f"the recording cannot be read: {error}") from error
     if entry.recorded_ns is None:

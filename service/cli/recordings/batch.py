@@ -17,6 +17,7 @@ from service.configuration.settings import Settings, SettingsError
 from service.plant import PlantError, read_plant
 from service.process.logs import without_logs
 from service.process.single_instance import AlreadyRunningError
+from service.recording_store.opening import open_store_anywhere
 from service.storage import Repository, StorageError, connect
 from service.storage.migrations import require_current_tables
 from service.storage.records import Job
@@ -75,7 +76,7 @@ def _workers(settings: Settings, scheduler: str | None, processes: int | None) -
 
     if scheduler is None:
         return DaskWorkers.of_this_machine(processes or settings.workers)
-    return DaskWorkers.of_scheduler(scheduler, settings.recordings_directory)
+    return DaskWorkers.of_scheduler(scheduler, open_store_anywhere(settings))
 
 
 def _time(text: str) -> int:

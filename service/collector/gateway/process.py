@@ -23,7 +23,7 @@ from service.process.logs import configure_logging
 from service.process.open_files import allow_open_files
 from service.process.single_instance import exclusive
 from service.process.termination import leave_to_parent
-from service.recording_store.store import RecordingStore
+from service.recording_store.opening import open_store
 from service.storage import Repository, connect
 from service.storage.transaction_limits import limits_of
 
@@ -67,7 +67,7 @@ def main(settings_pipe: BinaryIO = sys.stdin.buffer) -> None:
 def _collect(settings: Settings, number: int, stop: Event) -> list[str]:
     """Visit relays until `stop` is set. Returns the names of the threads that did not end in time."""
     name = gateway_id(settings, number)
-    store = RecordingStore(settings.recordings_directory, name.replace("/", "-"))
+    store = open_store(settings, name.replace("/", "-"))
     store.discard_incoming()
     marks = VisitMarks.of_gateway(settings.data_directory, number)
     marks.clear()  # left by a gateway whose service ended with it

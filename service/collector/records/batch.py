@@ -17,7 +17,8 @@ from service.collector.records.errors import RecordReplacedError
 from service.collector.records.life import RecordState
 from service.collector.records.listing import ListedFile, ListedRecord
 from service.collector.records.pull import DailyAllowance, beyond_its_end, pull
-from service.recording_store.store import Incoming, RecordingStore
+from service.recording_store.arriving import Incoming
+from service.recording_store.store import RecordingStore
 
 BATCH_S = 0.25
 """What was fetched waits about so long for the listing that confirms it; if the link ends, it comes anew."""

@@ -35,7 +35,9 @@ from service.collector.records.pull import DailyAllowance
 from service.collector.records.scan import Scan
 from service.configuration.settings import Settings
 from service.plant import Relay
-from service.recording_store.store import Incoming, RecordingStore
+from service.recording_store.arriving import Incoming
+from service.recording_store.errors import StoreUnreachableError
+from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from service.storage.errors import FolderGoneError
 from service.storage.records import RemoteRecord
@@ -260,6 +262,11 @@ class RecordDirectory:
         self, client: Client, ready: list[RecordState], claim: ClaimRequest, *, until_s: float
     ) -> tuple[RecordState, ...]:
         """Pull what is ready as far as the day's limit allows. Return those that must wait."""
+        problem = self._store.problem() if ready else None
+        if problem is not None:  # what is pulled could not be kept: the relay keeps it
+            for state in ready:
+                self._fail(state, StoreUnreachableError(problem), claim)
+            return ()
         with Batch(
             client,
             self._store,
@@ -358,6 +365,8 @@ class RecordDirectory:
         )
         if failure is Failure.BUSY:
             log.info("record busy", relay=self._relay, record=state.name, reason=reason)
+        if failure is Failure.STORE_AWAY:
+            log.warning("record waits in its relay", relay=self._relay, record=state.name, reason=reason)
         if attempts.reach(rule.alarm_after):
             text = alarm_text(failure, state.name, reason, attempts)
             self._alarms.raise_alarm(rule.alarm, state.name, text)

@@ -14,7 +14,7 @@ import structlog
 from core.units import NANOSECONDS_PER_DAY
 from service.collector.records.life import Life, RecordState, remote_of
 from service.collector.records.listing import ListedRecord
-from service.recording_store.store import StoredRecording
+from service.recording_store.recording import StoredRecording
 from service.storage import Repository
 from service.storage.records import Deletion, RecordingEntry, RemoteRecord
 from service.storage.states import RecordingState

@@ -20,7 +20,7 @@ from mms import (
     Timeout,
 )
 from service.collector.records.errors import RecordReplacedError, RecordTooLargeError
-from service.recording_store.store import RecordingStoreError
+from service.recording_store.errors import RecordingStoreError, StoreError
 from service.storage.states import AlarmKind
 from service.timing.backoff import Backoff
 
@@ -35,11 +35,13 @@ class Failure(StrEnum):
     PROTOCOL_BROKEN = "protocol broken"
     TOO_LARGE = "too large"
     NAME_REFUSED = "name refused"
+    STORE_AWAY = "store away"
 
 
 _KINDS: dict[type[Exception], Failure] = {
     RecordTooLargeError: Failure.TOO_LARGE,
     RecordingStoreError: Failure.NAME_REFUSED,
+    StoreError: Failure.STORE_AWAY,
     TemporarilyUnavailable: Failure.BUSY,
     # What a relay may answer for a record that is fine: nobody may open files, or it is out of memory.
     AccessDenied: Failure.DENIED,
@@ -128,6 +130,8 @@ DEFAULT_RULES: Mapping[Failure, FailureRule] = MappingProxyType(
             None, alarm_after=ONCE, refuse_after=ONCE, alarm=AlarmKind.FILE_TOO_LARGE
         ),
         Failure.NAME_REFUSED: FailureRule(None, refuse_after=ONCE),
+        # The relay and its record are fine. Nothing is asked for while the store says that it is away.
+        Failure.STORE_AWAY: FailureRule(Backoff(1.0, 60.0)),
     }
 )
 

@@ -10,7 +10,7 @@ from core.units import NANOSECONDS_PER_DAY
 from mms import Client
 from service.collector.records.errors import RecordTooLargeError
 from service.collector.records.listing import ListedRecord
-from service.recording_store.store import Incoming
+from service.recording_store.arriving import Incoming
 
 BLOCK_BYTES = 4096
 """The smallest file takes so much of a disk, and counts for so much."""

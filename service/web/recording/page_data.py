@@ -14,7 +14,7 @@ from service.api.recordings.diagnosis_schemas import Diagnosis
 from service.client.classification import AnswerShown, answer_shown
 from service.pictures.looks import PAGE
 from service.pictures.phasors import Phasor, phasor_picture
-from service.recording_store.store import RecordingStoreError
+from service.recording_store.errors import RecordingStoreError
 from service.storage.records import DiagnosisEntry, RecordingEntry, RecordingFile
 from service.waveforms.opened import Opened
 from service.waveforms.phasors import NamedPhasor, NoPhasorsError, PhasorsAt, phasors_at

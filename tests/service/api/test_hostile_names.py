@@ -11,7 +11,7 @@ import pytest
 from service.api import ApiContext, create_app
 from service.configuration.settings import Settings
 from service.plant import Plant
-from service.recording_store.store import RecordingStore
+from service.recording_store.folder import FolderStore
 from service.storage import Repository, connect
 from service.storage.states import AlarmKind
 from testing.service.database import make_database
@@ -38,7 +38,7 @@ def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[httpx.Client]:
     """A service whose sites, relays and motors have these names, each motor with a recording and an alarm."""
     data: Path = tmp_path_factory.mktemp("hostile")
     engine = connect(make_database(data))
-    repository, store = Repository(engine), RecordingStore(data / "recordings")
+    repository, store = Repository(engine), FolderStore(data / "recordings")
     register_runner(repository)
     plant = two_motor_plant()
     site, relay, pump = plant.sites[0], plant.relays[0], plant.motors[0]

@@ -17,7 +17,7 @@ from schemathesis.specs.openapi.checks import negative_data_rejection, positive_
 from service.api import ApiContext, create_app
 from service.client.credentials import bearer
 from service.configuration.settings import Settings
-from service.recording_store.store import RecordingStore
+from service.recording_store.folder import FolderStore
 from service.storage import Repository, connect
 from service.storage.records import Role, Sample
 from service.storage.states import AlarmKind, LinkState
@@ -59,7 +59,7 @@ def documented_api(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Api]:
     engine = connect(make_database(data))
     repository = Repository(engine)
     repository.sync_plant(two_motor_plant())
-    store = RecordingStore(data / "recordings")
+    store = FolderStore(data / "recordings")
     register_runner(repository)
     report = repository.request_recording("PUMP-A1", now_ns=NOW_NS)
     stored = store.store({"EVENT.CFG": CFG, "EVENT.DAT": DAT})

@@ -20,6 +20,7 @@ from service.jobs.worker import diagnose_recording, prepare_worker
 from service.storage.states import JobState
 from service.timing.backoff import Backoff
 from testing.service.archive import Archive, make_archive
+from testing.service.s3_server import BUCKET, serving_s3
 from testing.waiting import wait_until
 
 MCC = (sys.executable, "-m", "service.cli", "rediagnose", "--batch")
@@ -110,8 +111,10 @@ def test_a_batch_that_is_killed_goes_on(archive: Archive) -> None:
 
 
 @contextmanager
-def cluster(directory: Path, port: int = 0) -> Iterator[tuple[str, "subprocess.Popen[str]"]]:
-    """A scheduler and one worker, as people start them; the address, and the scheduler's process."""
+def cluster(
+    directory: Path, port: int = 0, workers: int = 1
+) -> Iterator[tuple[str, "subprocess.Popen[str]"]]:
+    """A scheduler and its workers, as people start them; the address, and the scheduler's process."""
     dask = (sys.executable, "-m", "dask")
     with ExitStack() as ending:
 
@@ -123,9 +126,10 @@ def cluster(directory: Path, port: int = 0) -> Iterator[tuple[str, "subprocess.P
         scheduler = begin("scheduler", "--host", "127.0.0.1", "--port", str(port), "--no-dashboard")
         assert scheduler.stderr is not None
         address = next(found[0] for line in scheduler.stderr if (found := re.search(r"tcp://[\d.:]+", line)))
-        worker = begin("worker", address, "--nthreads", "1", "--host", "127.0.0.1", "--no-dashboard")
-        assert worker.stderr is not None
-        assert any("Registered to" in line for line in worker.stderr)
+        for _ in range(workers):
+            worker = begin("worker", address, "--nthreads", "1", "--host", "127.0.0.1", "--no-dashboard")
+            assert worker.stderr is not None
+            assert any("Registered to" in line for line in worker.stderr)
         yield address, scheduler
 
 
@@ -153,6 +157,35 @@ def test_a_scheduler_that_dies_is_told_in_one_line_and_the_batch_goes_on(
     with cluster(tmp_path) as (address, _):
         assert run(archive, "--scheduler", address, "--model", MODEL) == told(RECORDS - done, done)
     assert archive.made() == [1] * RECORDS
+
+
+def test_workers_that_share_a_bucket_alone_give_what_the_service_gives(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The workers see no data directory; the scheduler dies in the middle, and the batch goes on."""
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    with serving_s3(tmp_path) as s3:
+        for name, value in s3.environment.items():
+            monkeypatch.setenv(name, value)
+        archive = make_archive(tmp_path, RECORDS, f"s3://{BUCKET}/archive")
+        diagnose_by_the_service(archive)
+        by_the_service = archive.documents()
+        again = ("--model", MODEL, "--made-before", datetime.now(UTC).isoformat())
+        with (
+            cluster(elsewhere, workers=2) as (address, scheduler),
+            start(archive, "--scheduler", address, *again) as process,
+        ):
+            wait_until(lambda: sum(archive.made()) >= RECORDS + 2, within_s=60)
+            scheduler.kill()
+            _, complained = process.communicate(timeout=60)
+        done = sum(archive.made()) - RECORDS
+        assert f"{RECORDS - done} recordings are left" in complained
+        with cluster(elsewhere, workers=2) as (address, _):
+            assert run(archive, "--scheduler", address, *again) == told(RECORDS - done, done)
+        assert archive.made() == [2] * RECORDS
+        assert archive.documents() == by_the_service
+        archive.engine.dispose()
 
 
 def test_an_edited_motors_file_asks_for_the_service_first(archive: Archive, tmp_path: Path) -> None:

@@ -21,6 +21,7 @@ from service.condition.motor_data import document_of
 from service.configuration.settings import Settings
 from service.demo import MOTORS
 from service.plant import read_plant
+from service.recording_store.folder import FolderStore
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect
 from service.storage.models import DiagnosisRow, JobRow
@@ -130,7 +131,7 @@ def test_a_service_and_two_hosts_of_workers_diagnose_each_recording_once(
             workers(tmp_path / "second", postgresql_url, recordings) as second,
         ):
             wait_until(lambda: len(repository.job_runners()) == 3, within_s=START_LIMIT_S)
-            add_recordings(repository, RecordingStore(recordings, "tests"))
+            add_recordings(repository, FolderStore(recordings, "tests"))
             wait_until(lambda: stopped_at_work(repository, first.pid), within_s=START_LIMIT_S)
             with ServiceClient(service.url) as client:
                 listed = {one["process_id"]: one for one in client.items("/job-runners")}
@@ -184,8 +185,8 @@ def test_workers_refuse_recordings_that_they_cannot_read(
     nothing.mkdir()
     line = refusal_of(environment_of(tmp_path, postgresql_url, nothing))
     assert f"{nothing}: expected the recordings of the service, found none: mount the folder" in line
-    add_recordings(served_plant, RecordingStore(tmp_path / "recordings", "tests"))
-    RecordingStore(nothing, "another service")
+    add_recordings(served_plant, FolderStore(tmp_path / "recordings", "tests"))
+    FolderStore(nothing, "another service")
     line = refusal_of(environment_of(tmp_path, postgresql_url, nothing))
     assert f"{nothing}: expected the recordings of the service, found: recording " in line
 

@@ -13,7 +13,7 @@ from service.backup.making import MadeBackup, Source
 from service.backup.noted import make_noted_backup
 from service.backup.restoring import Place
 from service.configuration.settings import sqlite_url
-from service.recording_store.store import RecordingStore
+from service.recording_store.folder import FolderStore
 from service.storage import Repository, connect
 from testing.service.job_runner import RUNNER
 from testing.service.plants import NOW_NS, SECOND_NS, fault
@@ -44,7 +44,7 @@ class Data:
     url: str
     engine: Engine
     repository: Repository
-    store: RecordingStore
+    store: FolderStore
     directory: Path
 
     @property
@@ -85,7 +85,7 @@ def rows_of(engine: Engine) -> Rows:
 
 @pytest.fixture
 def data(
-    repository: Repository, engine: Engine, database_url: str, store: RecordingStore, tmp_path: Path
+    repository: Repository, engine: Engine, database_url: str, store: FolderStore, tmp_path: Path
 ) -> Data:
     return Data(database_url, engine, repository, store, tmp_path / "copies")
 

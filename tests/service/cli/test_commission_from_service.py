@@ -82,7 +82,9 @@ class Here:
         claimed = self.repository.claim_job(now_ns=now_ns, runner=RUNNER)
         assert claimed is not None
         motor = replace(REFERENCE, name=MOTOR, parameters_source=ParametersSource.TYPICAL)
-        done = diagnose_recording(DiagnosisTask(stored.entry, motor, "hybrid", "split-winding"))
+        done = diagnose_recording(
+            DiagnosisTask(self.store.source(stored.digest), motor, "hybrid", "split-winding")
+        )
         assert isinstance(done, Diagnosed)
         self.repository.finish_job(
             claimed.job.id,

@@ -21,7 +21,7 @@ from service.cli.app import main
 from service.cli.commands.service import NoteKind
 from service.cli.motors import motors_table
 from service.configuration.settings import Settings
-from service.recording_store.store import RecordingStore
+from service.recording_store.folder import FolderStore
 from service.storage import Repository
 from service.storage.states import LinkState
 from testing.service.conditions import DRIFTING, FAULT, HEALTHY, tell
@@ -39,9 +39,7 @@ Mcc = Callable[..., str]
 
 @pytest.fixture
 def client(repository: Repository, tmp_path: Path) -> Iterator[httpx.Client]:
-    context = ApiContext(
-        Settings(data_directory=tmp_path), repository, RecordingStore(tmp_path / "recordings")
-    )
+    context = ApiContext(Settings(data_directory=tmp_path), repository, FolderStore(tmp_path / "recordings"))
     with serving(create_app(context)) as client:
         yield client
 
@@ -98,7 +96,7 @@ def test_80_columns_hold_the_list_of_motors(
 def test_health_says_what_to_do_then_why_then_what_the_latest_recording_says(
     mcc: Mcc, repository: Repository, tmp_path: Path
 ) -> None:
-    stored = RecordingStore(tmp_path / "recordings").store({"E.CFF": b"samples"})
+    stored = FolderStore(tmp_path / "recordings").store({"E.CFF": b"samples"})
     repository.add_recording(stored, motor="PUMP-A1", now_ns=NOW_NS)
     claimed = repository.claim_job(now_ns=NOW_NS, runner=RUNNER)
     assert claimed is not None
@@ -124,7 +122,7 @@ def test_health_says_what_to_do_then_why_then_what_the_latest_recording_says(
 
 def test_health_tells_the_rotor(mcc: Mcc, repository: Repository, tmp_path: Path) -> None:
     assert "rotor not told" in unframed(mcc("health", "PUMP-A1"))
-    recorded = ExaminedRecordings(repository, RecordingStore(tmp_path / "recordings"))
+    recorded = ExaminedRecordings(repository, FolderStore(tmp_path / "recordings"))
     for _ in range(2):
         recorded.add(BROKEN_ROTOR)
     shown = unframed(mcc("health", "PUMP-A1"))

@@ -14,6 +14,7 @@ from core.recordings import Channel, Quantity, Recording, comtrade
 from service.cli import main
 from service.jobs import Diagnosed, DiagnosisTask
 from service.jobs.worker import diagnose_recording
+from service.recording_store.recording import LocalFile
 from testing.machines.motors import REFERENCE
 from testing.machines.phase_circuits import recording, running
 
@@ -91,7 +92,7 @@ def test_departures_that_change_no_value_are_warnings_beside_the_same_verdict(
     assert main(["diagnose", str(path)]) == 0
     assert "constant: 'SPARE' (0 A)" in capsys.readouterr().out
     # The service reads the same way, and keeps the warnings with the diagnosis.
-    outcome = diagnose_recording(DiagnosisTask(path, REFERENCE, "hcpa", "split-winding"))
+    outcome = diagnose_recording(DiagnosisTask(LocalFile(path), REFERENCE, "hcpa", "split-winding"))
     assert isinstance(outcome, Diagnosed)
     assert [finding.message for finding in outcome.diagnosis.quality if finding.is_warning] == [
         one["message"] for one in warnings

@@ -12,7 +12,7 @@ from core.machines.parameters import ParametersSource
 from service.api import ApiContext, create_app
 from service.cli.app import main
 from service.configuration.settings import Settings
-from service.recording_store.store import RecordingStore
+from service.recording_store.folder import FolderStore
 from service.storage import Repository
 from service.storage.records import RelayFindings
 from service.storage.states import LinkState
@@ -31,7 +31,7 @@ def test_the_motors_whose_relay_is_down_say_why(
     repository.set_link_state("A1_SEL710", LinkState.DOWN, "10.0.0.7:102: connection refused", now_ns=NOW_NS)
     repository.set_link_state("A2_SEL710", LinkState.UP, None, now_ns=NOW_NS)
     app = create_app(
-        ApiContext(Settings(data_directory=tmp_path), repository, RecordingStore(tmp_path / "recordings"))
+        ApiContext(Settings(data_directory=tmp_path), repository, FolderStore(tmp_path / "recordings"))
     )
     with serving(app) as client:
         assert main(["motors", "--url", str(client.base_url)]) == 0
@@ -49,7 +49,7 @@ def test_a_motor_with_nothing_but_a_nameplate_is_listed_as_collecting(
     bare = replace(pump.motor, parameters_source=ParametersSource.TYPICAL)
     repository.sync_plant(replace(plant, motors=(replace(pump, motor=bare), fan)))
     app = create_app(
-        ApiContext(Settings(data_directory=tmp_path), repository, RecordingStore(tmp_path / "recordings"))
+        ApiContext(Settings(data_directory=tmp_path), repository, FolderStore(tmp_path / "recordings"))
     )
     with serving(app) as client:
         assert main(["motors", "--url", str(client.base_url)]) == 0
@@ -65,7 +65,7 @@ def test_the_motors_are_asked_for_once(
     repository: Repository, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     app = create_app(
-        ApiContext(Settings(data_directory=tmp_path), repository, RecordingStore(tmp_path / "recordings"))
+        ApiContext(Settings(data_directory=tmp_path), repository, FolderStore(tmp_path / "recordings"))
     )
     requests: list[str] = []
 
@@ -88,7 +88,7 @@ def test_a_relay_tells_what_is_used_of_it(
     repository: Repository, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     app = create_app(
-        ApiContext(Settings(data_directory=tmp_path), repository, RecordingStore(tmp_path / "recordings"))
+        ApiContext(Settings(data_directory=tmp_path), repository, FolderStore(tmp_path / "recordings"))
     )
     missing = {"kind": "logical-node", "expected": "A1_SEL710PRO/FLTRDRE1", "found": None}
     ignored = {"name": "NOTES.TXT", "reason": "no file of a recording"}
@@ -110,7 +110,7 @@ def test_a_relay_tells_what_is_used_of_it(
 def test_the_detection_limit_stands_beside_the_interval_from_all_causes(
     repository: Repository, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    store = RecordingStore(tmp_path / "recordings")
+    store = FolderStore(tmp_path / "recordings")
     repository.add_recording(store.store({"E.CFF": b"samples"}), motor="PUMP-A1", now_ns=NOW_NS)
     repository.register_runner("runner", installation="here", now_ns=NOW_NS, max_attempts=3)
     claimed = repository.claim_job(now_ns=NOW_NS, runner="runner")
@@ -129,7 +129,7 @@ def test_a_key_triggers_once(
     repository: Repository, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     app = create_app(
-        ApiContext(Settings(data_directory=tmp_path), repository, RecordingStore(tmp_path / "recordings"))
+        ApiContext(Settings(data_directory=tmp_path), repository, FolderStore(tmp_path / "recordings"))
     )
     with serving(app) as client:
         for key in ("a", "a", "\N{GREEK SMALL LETTER BETA}"):
@@ -142,7 +142,7 @@ def test_a_relay_is_released(
 ) -> None:
     repository.set_aside("A1_SEL710", "it lied", backoff=Backoff(60.0, 60.0), now_ns=NOW_NS)
     app = create_app(
-        ApiContext(Settings(data_directory=tmp_path), repository, RecordingStore(tmp_path / "recordings"))
+        ApiContext(Settings(data_directory=tmp_path), repository, FolderStore(tmp_path / "recordings"))
     )
     with serving(app) as client:
         assert main(["release", "A1_SEL710", "--url", str(client.base_url)]) == 0
@@ -163,7 +163,7 @@ def test_a_wait_without_end_is_refused(wait: str, capsys: pytest.CaptureFixture[
 def test_a_trigger_that_is_not_waited_for_names_what_is_next(
     repository: Repository, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    store = RecordingStore(tmp_path / "recordings")
+    store = FolderStore(tmp_path / "recordings")
     app = create_app(ApiContext(Settings(data_directory=tmp_path), repository, store))
     with serving(app) as client:
         words = ["trigger", "PUMP-A1", "--url", str(client.base_url)]
@@ -177,7 +177,7 @@ def test_a_trigger_that_is_not_waited_for_names_what_is_next(
 def test_a_trigger_without_a_verdict_says_what_is_not_ready(
     repository: Repository, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    store = RecordingStore(tmp_path / "recordings")
+    store = FolderStore(tmp_path / "recordings")
     settings = Settings(data_directory=tmp_path)
     readiness = {"jobs": lambda: "2 of 2 workers are loading"}
     context = ApiContext(settings, repository, store, readiness=readiness)

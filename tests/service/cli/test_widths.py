@@ -12,7 +12,7 @@ from service.api import ApiContext, create_app
 from service.cli.app import main
 from service.configuration.settings import Settings
 from service.plant import Plant, PlantMotor, Site
-from service.recording_store.store import RecordingStore
+from service.recording_store.folder import FolderStore
 from service.storage import Repository, connect
 from service.storage.states import AlarmKind, LinkState
 from testing.service.conditions import FAULT, tell
@@ -49,7 +49,7 @@ ALONE = [
 def client(database_url: str, tmp_path: Path) -> Iterator[httpx.Client]:
     """A service of motors with long names, with something in every table."""
     engine = connect(database_url)
-    repository, store = Repository(engine), RecordingStore(tmp_path / "recordings")
+    repository, store = Repository(engine), FolderStore(tmp_path / "recordings")
     relays = (relay(f"{LONG}_SEL710", "SITE"), relay("R2", "SITE", 10_300))
     motors = (PlantMotor(motor(LONG), "", "SITE", relays[0].name), PlantMotor(motor("M2"), "", "SITE", "R2"))
     repository.sync_plant(Plant((Site("SITE", ""),), relays, motors))

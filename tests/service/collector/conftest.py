@@ -15,7 +15,7 @@ from service.collector.session.relay_session import RelaySession
 from service.collector.session.session_policy import SESSION_POLICY, SessionPolicy
 from service.configuration.settings import Settings
 from service.plant import Plant, PlantMotor, Relay, Site
-from service.recording_store.store import RecordingStore
+from service.recording_store.folder import FolderStore
 from service.storage import Repository, connect
 from service.storage.records import RecordingEntry, RecordingRequest, Sample
 from service.storage.states import AlarmKind, LinkState, RecordingRequestState, RecordingState
@@ -41,7 +41,7 @@ class Bench:
 
     relay: Relay
     repository: Repository
-    store: RecordingStore
+    store: FolderStore
     settings: Settings
     relay_root: Path
     policy: SessionPolicy = SESSION_POLICY
@@ -143,7 +143,7 @@ def bench(tmp_path: Path) -> Bench:
     )
     repository = Repository(connect(settings.database_url))
     repository.sync_plant(plant)
-    store = RecordingStore(settings.recordings_directory)
+    store = FolderStore(settings.recordings_directory)
     return Bench(relay, repository, store, settings, tmp_path / "relay")
 
 

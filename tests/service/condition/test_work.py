@@ -54,7 +54,8 @@ LIMITS = JobLimits(workers=2, job_timeout_s=30.0, attempts=2, backoff=Backoff(0.
 
 def observe_as_told(task: DiagnosisTask) -> Outcome:
     """A task that stands in for the diagnosis: the file says which of RECORDS it is."""
-    at = int(task.entry.read_text())
+    with task.recording.opened() as entry:
+        at = int(entry.read_text())
     observation = WRONG_CLOCKS[at] if at in WRONG_CLOCKS else RECORDS[at]
     return Diagnosed(healthy(), observation.time_ns, observation)
 

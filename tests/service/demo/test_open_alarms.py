@@ -10,7 +10,7 @@ from service.demo.open_alarms import alarm_text, open_alarms_of
 from service.demo.results import DemoMotor
 from service.demo.status import ask_status
 from service.demo.truth import Truth
-from service.recording_store.store import RecordingStore
+from service.recording_store.folder import FolderStore
 from service.storage import Repository
 from service.storage.records import AlarmPlace, AlarmSpec
 from service.storage.records.actors import SERVICE
@@ -29,7 +29,7 @@ def test_a_motors_alarm_stands_beside_its_condition(repository: Repository, tmp_
     spec = AlarmSpec(AlarmKind.CONDITION_FAULT, "shorted turns in phase b", "shorted-turns")
     raised = repository.raise_alarm_at(place, spec, now_ns=NOW_NS)
     repository.raise_alarm("A1_SEL710", AlarmKind.DAILY_LIMIT, "", "of the relay itself", now_ns=NOW_NS)
-    store = RecordingStore(tmp_path / "recordings")
+    store = FolderStore(tmp_path / "recordings")
     app = create_app(ApiContext(Settings(data_directory=tmp_path), repository, store))
     with serving(app) as client, ServiceClient(str(client.base_url)) as service:
         open_alarms = open_alarms_of(service)

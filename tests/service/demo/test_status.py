@@ -19,7 +19,7 @@ from service.demo.plant import START_LIMIT_S, NotReadyError, plant_elsewhere, wa
 from service.demo.status import MotorStatus, ask_status
 from service.demo.truth import Truth, TruthError
 from service.plant import Plant, PlantMotor, Site
-from service.recording_store.store import RecordingStore
+from service.recording_store.folder import FolderStore
 from service.storage import Repository
 from testing.service.job_runner import RUNNER, register_runner
 from testing.service.plants import NOW_NS, fault, motor, relay
@@ -114,7 +114,7 @@ def test_data_of_a_demo_elsewhere_is_wrong_use(tmp_path: Path) -> None:
 
 
 def test_the_plant_of_somebody_else_is_no_demo(repository: Repository, tmp_path: Path) -> None:
-    store = RecordingStore(tmp_path / "recordings")
+    store = FolderStore(tmp_path / "recordings")
     app = create_app(ApiContext(Settings(data_directory=tmp_path), repository, store))
     with (
         serving(app) as client,
@@ -129,7 +129,7 @@ def test_another_plant_is_one_line_and_no_traceback(
     engine: Engine, tmp_path: Path, capsys: pytest.CaptureFixture[str], motors: list[str]
 ) -> None:
     """Also where a relay has a name of the demo's, and where records are of years ago."""
-    repository, store = Repository(engine), RecordingStore(tmp_path / "recordings")
+    repository, store = Repository(engine), FolderStore(tmp_path / "recordings")
     names = ["A2_SEL710", "R1", "R2", "R3"][: len(motors)]
     relays = tuple(relay(name, "SITE", 10300 + number) for number, name in enumerate(names))
     bound = tuple(

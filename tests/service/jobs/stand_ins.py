@@ -8,6 +8,7 @@ from pathlib import Path
 
 from service.jobs import Diagnosed, DiagnosisTask, Outcome, Rejected
 from service.jobs.worker_process import follow_service
+from service.recording_store.recording import LocalFile
 from testing.service.plants import NOW_NS, SECOND_NS, fault
 from testing.service.rotor_and_supply import BROKEN_ROTOR, SUPPLY
 from testing.waiting import wait_until
@@ -51,16 +52,18 @@ def mount(root: Path) -> None:
     root.with_suffix(".elsewhere").rename(root)
 
 
-def lose_the_folder(task: DiagnosisTask, told: str) -> Outcome:
-    unmount(task.entry.parents[2])
+def lose_the_folder(entry: Path, told: str) -> Outcome:
+    unmount(entry.parents[2])
     if told == "raise as the folder goes":
-        raise FileNotFoundError(task.entry)
-    return Rejected(f"{task.entry}: no such file")
+        raise FileNotFoundError(entry)
+    return Rejected(f"{entry}: no such file")
 
 
 def act_as_told(task: DiagnosisTask) -> Outcome:
-    told = task.entry.read_text()
-    first_time = task.entry.with_suffix(".tried")
+    assert isinstance(task.recording, LocalFile)
+    entry = task.recording.path
+    told = entry.read_text()
+    first_time = entry.with_suffix(".tried")
     if told in REJECTIONS:
         return Rejected(REJECTIONS[told])
     if told == "raise":
@@ -69,7 +72,7 @@ def act_as_told(task: DiagnosisTask) -> Outcome:
         raise ArithmeticError(STRANGE + LONG)
     if told in UNMOUNTING and not first_time.exists():
         first_time.touch()
-        return lose_the_folder(task, told)
+        return lose_the_folder(entry, told)
     if told == "slow":
         time.sleep(0.05)
     if told in RESULTS:

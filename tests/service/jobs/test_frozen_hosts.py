@@ -14,7 +14,7 @@ import pytest
 from sqlalchemy import Engine, func, select, text
 from sqlalchemy.orm import Session
 
-from service.recording_store.store import RecordingStore
+from service.recording_store.folder import FolderStore
 from service.storage import Repository, connect
 from service.storage.models import DiagnosisRow, JobRunnerRow
 from service.storage.states import JobState
@@ -69,7 +69,7 @@ def jobs_of(repository: Repository, process_id: int) -> int | None:
 
 @pytest.mark.timeout(400)
 def test_a_host_frozen_inside_a_transaction_loses_its_job_and_goes_on_when_it_wakes(
-    repository: Repository, store: RecordingStore, engine: Engine, database_url: str, tmp_path: Path
+    repository: Repository, store: FolderStore, engine: Engine, database_url: str, tmp_path: Path
 ) -> None:
     log = tmp_path / "log"
     taken_over = add(repository, store, "hang once")
@@ -93,7 +93,7 @@ def test_a_host_frozen_inside_a_transaction_loses_its_job_and_goes_on_when_it_wa
 
 
 def test_a_lock_that_somebody_forgot_costs_no_runner_its_lease(
-    repository: Repository, store: RecordingStore, engine: Engine, database_url: str
+    repository: Repository, store: FolderStore, engine: Engine, database_url: str
 ) -> None:
     waiting = connect(database_url, limits=TransactionLimits.of_lease(LEASE_S))
     recording_id = add(repository, store, "fine")

@@ -15,7 +15,8 @@ import pytest
 from sqlalchemy import Engine
 from structlog.testing import capture_logs
 
-from service.recording_store.store import RecordingStore
+from service.recording_store.folder import FolderStore
+from service.recording_store.recording import LocalFile
 from service.storage import Repository, connect
 from service.storage.records import RemoteRecord
 from service.storage.states import AlarmKind, JobState, RecordingRequestState, RecordingState
@@ -36,7 +37,7 @@ LEASE_S = 1.5
 
 
 def test_every_recording_comes_to_its_end_whatever_the_workers_do(
-    repository: Repository, store: RecordingStore
+    repository: Repository, store: FolderStore
 ) -> None:
     """One run for all of it: worker processes take a second to start."""
     told = ("fine", "reject", "raise", "die", "die once", "broken bars")
@@ -75,7 +76,7 @@ def test_every_recording_comes_to_its_end_whatever_the_workers_do(
 
 
 def test_whatever_a_result_holds_its_job_alone_fails(
-    repository: Repository, store: RecordingStore, engine: Engine
+    repository: Repository, store: FolderStore, engine: Engine
 ) -> None:
     ids = {
         what: add(repository, store, what)
@@ -113,7 +114,7 @@ def test_whatever_a_result_holds_its_job_alone_fails(
     assert diagnosis.document["reasons"] == [readable]
 
 
-def test_a_mass_of_repetitions_delays_no_fresh_record(repository: Repository, store: RecordingStore) -> None:
+def test_a_mass_of_repetitions_delays_no_fresh_record(repository: Repository, store: FolderStore) -> None:
     old = add(repository, store, "slow")
     with running(repository, store, replace(LIMITS, workers=1)):
         wait_until(lambda: ended(repository, old), within_s=60)
@@ -141,21 +142,21 @@ def started(repository: Repository, recording_id: str) -> list[tuple[str, int]]:
     return [(job.id, job.started_ns) for job in jobs if job.started_ns is not None]
 
 
-class LostWhileClaiming(RecordingStore):
+class LostWhileClaiming(FolderStore):
     """A store whose folder goes as the first recording is looked up, which is after the runner has looked."""
 
     was_lost = False
 
-    def entry(self, digest: str) -> Path:
+    def source(self, digest: str) -> LocalFile:
         if not self.was_lost:
             self.was_lost = True
             unmount(self.root)
-        return super().entry(digest)
+        return super().source(digest)
 
 
 @pytest.mark.parametrize("told", ["fine", *UNMOUNTING])
 def test_no_recording_is_at_fault_where_the_folder_of_all_is_gone(
-    repository: Repository, store: RecordingStore, told: str
+    repository: Repository, store: FolderStore, told: str
 ) -> None:
     recording_id = add(repository, store, told)
     theirs = LostWhileClaiming(store.root) if told == "fine" else store
@@ -168,10 +169,10 @@ def test_no_recording_is_at_fault_where_the_folder_of_all_is_gone(
         wait_until(lambda: ended(repository, recording_id))
     assert repository.recording(recording_id).state is RecordingState.DIAGNOSED
     warnings = [one["event"] for one in said if one["log_level"] == "warning"]
-    assert warnings == ["jobs wait for the folder of the recordings"]
+    assert warnings == ["jobs wait for the recordings"]
 
 
-def test_a_job_that_takes_too_long_is_given_up(repository: Repository, store: RecordingStore) -> None:
+def test_a_job_that_takes_too_long_is_given_up(repository: Repository, store: FolderStore) -> None:
     report = repository.request_recording("PUMP-A1", now_ns=time.time_ns())
     stored = store.store({"E.CFF": b"hang"})
     repository.add_recording(stored, motor="PUMP-A1", recording_request_id=report.id, now_ns=time.time_ns())
@@ -183,7 +184,7 @@ def test_a_job_that_takes_too_long_is_given_up(repository: Repository, store: Re
     )
 
 
-def test_a_clean_stop_gives_running_jobs_back(repository: Repository, store: RecordingStore) -> None:
+def test_a_clean_stop_gives_running_jobs_back(repository: Repository, store: FolderStore) -> None:
     recording_id = add(repository, store, "hang once")
     with running(repository, store):
         wait_until(lambda: worker_of(store))
@@ -195,14 +196,14 @@ def test_a_clean_stop_gives_running_jobs_back(repository: Repository, store: Rec
 
 
 def serve_and_hang(url: str, root: Path, installation: str = "ours") -> None:
-    store = RecordingStore(root)
+    store = FolderStore(root)
     with running(
         Repository(connect(url)), store, replace(LIMITS, lease_s=LEASE_S), installation=installation
     ):
         time.sleep(600)
 
 
-def worker_of(store: RecordingStore) -> int | None:
+def worker_of(store: FolderStore) -> int | None:
     """Process id of the worker that hangs."""
     for path in store.root.rglob("*.tried"):
         text = path.read_text()
@@ -220,7 +221,7 @@ def alive(process_id: int) -> bool:
 
 
 def test_a_killed_service_loses_no_job_and_leaves_no_worker(
-    repository: Repository, store: RecordingStore, database_url: str
+    repository: Repository, store: FolderStore, database_url: str
 ) -> None:
     recording_id = add(repository, store, "hang once")
     context = multiprocessing.get_context("spawn")
@@ -243,7 +244,7 @@ def test_a_killed_service_loses_no_job_and_leaves_no_worker(
 
 
 def test_two_services_share_the_jobs_and_one_takes_over_from_a_killed_one(
-    repository: Repository, store: RecordingStore, database_url: str
+    repository: Repository, store: FolderStore, database_url: str
 ) -> None:
     recording_id = add(repository, store, "hang once")
     context = multiprocessing.get_context("spawn")
@@ -266,7 +267,7 @@ def test_two_services_share_the_jobs_and_one_takes_over_from_a_killed_one(
 
 
 def test_the_runner_is_not_ready_before_its_workers_are(
-    repository: Repository, store: RecordingStore, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    repository: Repository, store: FolderStore, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     go = tmp_path / "go"
     monkeypatch.setenv(GO, str(go))
@@ -279,7 +280,7 @@ def test_the_runner_is_not_ready_before_its_workers_are(
         wait_until(lambda: ended(repository, recording_id))
 
 
-def test_workers_that_cannot_start_show_in_the_problem(repository: Repository, store: RecordingStore) -> None:
+def test_workers_that_cannot_start_show_in_the_problem(repository: Repository, store: FolderStore) -> None:
     recording_id = add(repository, store, "fine")
     with running(repository, store, prepare_worker=fail_to_start) as runner:
         wait_until(lambda: "the worker processes ended" in (runner.problem() or ""))
@@ -307,7 +308,7 @@ NO_PROCESS = f"cannot be started: [Errno {errno.EAGAIN}]"
 
 
 def test_a_start_that_gets_no_process_is_told_and_tried_again(
-    repository: Repository, store: RecordingStore, exhausted: Event
+    repository: Repository, store: FolderStore, exhausted: Event
 ) -> None:
     recording_id = add(repository, store, "fine")
     exhausted.set()
@@ -320,7 +321,7 @@ def test_a_start_that_gets_no_process_is_told_and_tried_again(
 
 
 def test_workers_that_die_while_the_system_has_no_process_to_give_are_replaced_later(
-    repository: Repository, store: RecordingStore, exhausted: Event
+    repository: Repository, store: FolderStore, exhausted: Event
 ) -> None:
     with running(repository, store) as runner:
         wait_until(lambda: runner.problem() is None)
@@ -335,7 +336,7 @@ def test_workers_that_die_while_the_system_has_no_process_to_give_are_replaced_l
     assert repository.recording(recording_id).state is RecordingState.DIAGNOSED
 
 
-def test_workers_that_die_idle_are_replaced(repository: Repository, store: RecordingStore) -> None:
+def test_workers_that_die_idle_are_replaced(repository: Repository, store: FolderStore) -> None:
     with running(repository, store) as runner:
         wait_until(lambda: runner.problem() is None)
         for worker in idle_workers():

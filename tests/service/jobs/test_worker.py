@@ -16,6 +16,7 @@ from core.time_stamps import nanoseconds
 from service.jobs import Diagnosed, DiagnosisTask, JobRunner, Rejected
 from service.jobs.limits import JobLimits
 from service.jobs.worker import diagnose_recording, prepare_worker
+from service.recording_store.recording import LocalFile
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from service.timing.backoff import Backoff
@@ -48,7 +49,7 @@ def recording(*, voltages: bool = True) -> Recording:
 
 
 def task(entry: Path, method: str = "hcpa") -> DiagnosisTask:
-    return DiagnosisTask(entry, motor("PUMP-A1"), method, "split-winding")
+    return DiagnosisTask(LocalFile(entry), motor("PUMP-A1"), method, "split-winding")
 
 
 def test_a_record_is_diagnosed_as_of_its_trigger(tmp_path: Path) -> None:
@@ -165,8 +166,8 @@ def test_what_the_baseline_shows_is_taken_off(tmp_path: Path) -> None:
         gains, seed = (1.0, 1.03, 1.0), round(100 * load_level)
         return written(tmp_path / name, waveforms(operation, noise=0.002, current_gains=gains, seed=seed))
 
-    healthy = tuple(record(f"OK{k}", load_level) for k, load_level in enumerate((0.3, 0.6, 0.9)))
-    alone = DiagnosisTask(record("NEW", 0.5), REFERENCE, "hybrid", "split-winding")
+    healthy = tuple(LocalFile(record(f"OK{k}", load_level)) for k, load_level in enumerate((0.3, 0.6, 0.9)))
+    alone = DiagnosisTask(LocalFile(record("NEW", 0.5)), REFERENCE, "hybrid", "split-winding")
     outcomes = [diagnose_recording(one) for one in (alone, replace(alone, baseline=healthy))]
     apparent, relative = (one.diagnosis for one in outcomes if isinstance(one, Diagnosed))
     assert apparent.mu_f is not None
@@ -177,7 +178,8 @@ def test_what_the_baseline_shows_is_taken_off(tmp_path: Path) -> None:
 
 def test_a_baseline_that_cannot_be_learnt_rejects_with_its_reason(tmp_path: Path) -> None:
     entry = write(tmp_path / "EVENT", recording())
-    outcome = diagnose_recording(replace(task(entry), baseline=(entry, tmp_path / "GONE.CFG", entry)))
+    baseline = (LocalFile(entry), LocalFile(tmp_path / "GONE.CFG"), LocalFile(entry))
+    outcome = diagnose_recording(replace(task(entry), baseline=baseline))
     assert isinstance(outcome, Rejected)
     assert "the motor's baseline cannot be learnt" in outcome.reason
 

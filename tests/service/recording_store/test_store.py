@@ -1,4 +1,8 @@
+"""What every store does: a folder, and a bucket of a real server."""
+
 import os
+import pickle
+import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -6,22 +10,32 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from service.recording_store.store import RecordingStore, RecordingStoreError, safe_name
-from tests.service.fixtures import store
+from service.recording_store.contents import safe_name
+from service.recording_store.errors import RecordingStoreError
+from service.recording_store.store import RecordingStore
+from service.recording_store.unknown_folders import PREFIXES
+from tests.service.recording_store.conftest import StoreMaker
 
-__all__ = ["store"]
 FILES: dict[str, Path | bytes] = {"c_0001.cfg": b"config", "EVENTS/C_0001.DAT": b"samples"}
 
 
-def test_files_are_kept_in_a_folder_of_their_content(store: RecordingStore) -> None:
+def contents(store: RecordingStore, digest: str) -> dict[str, bytes]:
+    with store.opened(digest) as entry:
+        return {path.name: path.read_bytes() for path in entry.parent.iterdir()}
+
+
+def known(store: RecordingStore) -> set[str]:
+    return {folder.digest for prefix in PREFIXES for folder in store.unknown.stored(prefix)}
+
+
+def test_files_are_kept_under_their_content(store: RecordingStore) -> None:
     stored = store.store(FILES)
-    assert stored.directory == store.root / stored.digest[:2] / stored.digest
     assert [(f.name, f.size_bytes) for f in stored.files] == [("C_0001.CFG", 6), ("C_0001.DAT", 7)]
-    assert (stored.name, stored.size_bytes) == ("C_0001", 13)
-    assert stored.entry.read_bytes() == b"config"
+    assert (stored.name, stored.size_bytes, stored.entry_name) == ("C_0001", 13, "C_0001.CFG")
+    assert contents(store, stored.digest) == {"C_0001.CFG": b"config", "C_0001.DAT": b"samples"}
     assert store.find(stored.digest) == stored
-    assert store.entry(stored.digest) == stored.entry
-    assert list((store.root / "incoming" / "service").iterdir()) == []
+    assert stored.is_there()
+    assert store.problem() is None
 
 
 def test_the_same_files_are_stored_once(store: RecordingStore, tmp_path: Path) -> None:
@@ -29,6 +43,7 @@ def test_the_same_files_are_stored_once(store: RecordingStore, tmp_path: Path) -
     copy.write_bytes(b"samples")
     first = store.store(FILES)
     assert store.store({"C_0001.DAT": copy, "C_0001.CFG": b"config"}) == first
+    assert known(store) == {first.digest}
     assert store.store(FILES | {"EVENTS/C_0001.DAT": b"sample_"}).digest != first.digest
 
 
@@ -39,37 +54,22 @@ def test_many_at_once_store_one(store: RecordingStore) -> None:
     assert store.find(stored[0].digest) == stored[0]
 
 
-def test_all_is_on_disk_before_the_folder_has_its_name(
-    store: RecordingStore, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """What a power cut leaves cannot be seen here; the order of the system's calls can."""
-    calls: list[tuple[str, str, int]] = []
-    fsync, rename = os.fsync, os.rename
+def test_whoever_reads_needs_its_name_alone(store: RecordingStore) -> None:
+    """Tasks of other processes and hosts carry a source, and what was learnt is kept by it."""
+    source = store.source(store.store(FILES).digest)
+    elsewhere = pickle.loads(pickle.dumps(source))  # noqa: S301 - our own
+    assert elsewhere == source
+    assert hash(elsewhere) == hash(source)
+    assert elsewhere.is_seen_here()
+    with elsewhere.opened() as entry:
+        assert (entry.name, entry.read_bytes()) == ("C_0001.CFG", b"config")
+    again: RecordingStore = pickle.loads(pickle.dumps(store))  # noqa: S301 - our own
+    assert again.find(source_digest(store)).name == "C_0001"
 
-    def syncing(descriptor: int) -> None:
-        found = os.fstat(descriptor)
-        path = Path(f"/proc/self/fd/{descriptor}").readlink()
-        calls.append(("fsync", str(path), 0 if path.is_dir() else found.st_size))
-        fsync(descriptor)
 
-    def renaming(source: Path, target: Path) -> None:
-        calls.append(("rename", f"{source} {target}", 0))
-        rename(source, target)
-
-    monkeypatch.setattr(os, "fsync", syncing)
-    monkeypatch.setattr(os, "rename", renaming)
-    stored = store.store(FILES)
-    (named,) = [number for number, call in enumerate(calls) if call[0] == "rename"]
-    incoming, target = calls[named][1].split(" ")
-    assert target == str(stored.directory)
-    assert {*calls[:named]} == {
-        ("fsync", f"{incoming}/C_0001.CFG", len(b"config")),
-        ("fsync", f"{incoming}/C_0001.DAT", len(b"samples")),
-        ("fsync", incoming, 0),
-        ("fsync", str(store.root), 0),
-    }
-    assert calls[named - 2][1] == incoming, "a folder after the files in it"
-    assert calls[named + 1 :] == [("fsync", str(stored.directory.parent), 0)]
+def source_digest(store: RecordingStore) -> str:
+    (digest,) = known(store)
+    return digest
 
 
 def test_what_is_not_kept_leaves_nothing(store: RecordingStore) -> None:
@@ -80,20 +80,53 @@ def test_what_is_not_kept_leaves_nothing(store: RecordingStore) -> None:
 
     with pytest.raises(ConnectionError):
         interrupted_pull()
-    assert [path for path in store.root.rglob("*") if path.is_file()] == []
+    assert known(store) == set()
+    assert store.discard_incoming() == 0
 
 
-def test_left_overs_of_a_killed_run_are_removed_and_nobody_elses(store: RecordingStore) -> None:
-    killed = store.root / "incoming" / "service" / "killed"
-    killed.mkdir()
-    (killed / "A.CFG").write_bytes(b"half")
-    gateway = RecordingStore(store.root, "gateway")
-    with gateway.incoming() as incoming:
+def test_left_overs_of_a_killed_run_are_removed_and_nobody_elses(opened_by: StoreMaker) -> None:
+    killed, other = opened_by("killed"), opened_by("gateway")
+    with other.incoming() as incoming:
         with incoming.create("B.CFG") as sink:
             sink.write(b"config")
-        assert store.discard_incoming() == 1
-        assert store.discard_incoming() == 0
+        left = killed.incoming()
+        left.__enter__()  # and never left: the process was killed
+        assert opened_by("killed").discard_incoming() == 1
+        assert opened_by("killed").discard_incoming() == 0
         assert incoming.keep().name == "B"
+
+
+def test_what_is_set_aside_is_gone(store: RecordingStore) -> None:
+    stored, other = store.store(FILES), store.store({"OTHER.CFF": b"other"})
+    for _ in range(2):
+        store.set_aside(stored.digest)
+        store.remove_set_aside(stored.digest)
+    store.remove_set_aside()
+    assert not stored.is_there()
+    with pytest.raises(RecordingStoreError, match="missing"):
+        store.find(stored.digest)
+    assert known(store) == {other.digest}
+    assert store.store(FILES).is_there()
+
+
+def test_what_the_database_does_not_know_is_moved_apart_and_put_back(store: RecordingStore) -> None:
+    began_s = time.time()
+    stored = store.store(FILES)
+    (folder,) = store.unknown.stored(stored.digest[:2])
+    assert (folder.digest, folder.size_bytes) == (stored.digest, 13)
+    assert began_s - 2.0 <= folder.since_s <= time.time() + 2.0
+    store.unknown.move_apart(stored.digest)
+    assert not stored.is_there()
+    (apart,) = store.unknown.set_apart()
+    assert (apart.digest, apart.size_bytes) == (stored.digest, 13)
+    with pytest.raises(FileNotFoundError):
+        store.unknown.move_apart(stored.digest)
+    store.unknown.put_back(stored.digest)
+    assert store.find(stored.digest) == stored
+    assert list(store.unknown.set_apart()) == []
+    store.unknown.move_apart(stored.digest)
+    store.unknown.remove(stored.digest)
+    assert (known(store), list(store.unknown.set_apart())) == (set(), [])
 
 
 @pytest.mark.parametrize(
@@ -125,16 +158,6 @@ def test_no_name_leaves_its_folder(name: str) -> None:
     assert Path(os.path.normpath(folder / safe)).parent == folder
     assert safe.isascii()
     assert safe.isprintable()
-
-
-def test_damage_is_noticed(store: RecordingStore) -> None:
-    stored = store.store(FILES)
-    stored.entry.write_bytes(b"konfig")
-    with pytest.raises(RecordingStoreError, match="are not those stored"):
-        store.find(stored.digest)
-    stored.entry.unlink()
-    with pytest.raises(RecordingStoreError, match="exactly one file"):
-        store.entry(stored.digest)
 
 
 @pytest.mark.parametrize("digest", ["0" * 64, "../../etc", ""])

@@ -8,7 +8,7 @@ from core.condition.events import Event, EventKind
 from core.operation import Operation
 from core.units import NANOSECONDS_PER_DAY
 from service.condition.motor_data import document_of
-from service.recording_store.store import RecordingStore
+from service.recording_store.folder import FolderStore
 from service.reports.source import ReportSource
 from service.storage import Repository, connect
 from service.storage.records.actors import SERVICE
@@ -38,7 +38,7 @@ def seeded(tmp_path_factory: pytest.TempPathFactory) -> Iterator[ReportSource]:
     repository.sync_plant(plant)
     register_runner(repository)
     repository.note_motors({one.name: document_of(one.motor) for one in plant.motors}, now_ns=NOW_NS)
-    store = RecordingStore(directory / "recordings")
+    store = FolderStore(directory / "recordings")
     for number, observed in enumerate(records_of_a_motor(RECORDS, fault_from=25)):
         add_diagnosed(repository, store, fault(), observed.time_ns, name=f"E{number}", observed=observed)
     since_ns = NOW_NS + 25 * HOUR_NS

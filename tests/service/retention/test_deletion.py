@@ -10,7 +10,7 @@ from service.collector.records.ledger import RecordLedger
 from service.collector.records.life import Life, RecordState
 from service.collector.records.listing import ListedRecord
 from service.plant import Plant
-from service.recording_store.store import RecordingStore
+from service.recording_store.folder import FolderStore
 from service.retention.deletion import delete_recording, remove_discarded_folders
 from service.storage import NotFoundError, Repository
 from service.storage.errors import FolderGoneError, RecordingInUseError
@@ -25,7 +25,7 @@ REMOTE = RemoteRecord("HR_1", 30, NOW_NS)
 
 
 def pulled(
-    repository: Repository, store: RecordingStore, name: str = "HR_1", content: bytes = b"samples"
+    repository: Repository, store: FolderStore, name: str = "HR_1", content: bytes = b"samples"
 ) -> str:
     stored = store.store({f"{name}.CFG": b"config", f"{name}.DAT": content})
     remote = RemoteRecord(name, REMOTE.size_bytes, REMOTE.modified_ns)
@@ -39,7 +39,7 @@ def diagnose(repository: Repository, recorded_ns: int = NOW_NS) -> None:
     repository.finish_job(claimed.job.id, fault(), recorded_ns=recorded_ns, now_ns=NOW_NS, runner=RUNNER)
 
 
-def folders(store: RecordingStore) -> set[str]:
+def folders(store: FolderStore) -> set[str]:
     """The digests of all folders of the store, also of those that are half removed."""
     return {path.name for path in store.root.glob("*/*") if path.parent.name not in ("incoming",)}
 
@@ -54,7 +54,7 @@ def life(state: RecordState) -> Life:
 
 
 def test_all_of_it_goes_and_the_trend_and_the_health_follow(
-    repository: Repository, store: RecordingStore
+    repository: Repository, store: FolderStore
 ) -> None:
     first = pulled(repository, store)
     diagnose(repository)
@@ -100,7 +100,7 @@ def test_all_of_it_goes_and_the_trend_and_the_health_follow(
 
 
 def test_a_request_that_waited_for_the_diagnosis_fails_with_the_reason(
-    repository: Repository, store: RecordingStore
+    repository: Repository, store: FolderStore
 ) -> None:
     request = repository.request_recording(MOTOR, now_ns=NOW_NS)
     stored = store.store({"U.CFF": b"samples"})
@@ -116,7 +116,7 @@ def test_a_request_that_waited_for_the_diagnosis_fails_with_the_reason(
     assert repository.claim_job(now_ns=2**62, runner=RUNNER) is None, "its queued job is gone"
 
 
-def test_what_is_in_use_is_not_deleted(repository: Repository, store: RecordingStore) -> None:
+def test_what_is_in_use_is_not_deleted(repository: Repository, store: FolderStore) -> None:
     announced = repository.announce_recording(RELAY, MOTOR, REMOTE, now_ns=NOW_NS)
     with pytest.raises(RecordingInUseError, match="is announced, and its relay still has its files"):
         repository.delete_recording(announced.id, "x", now_ns=NOW_NS)
@@ -135,7 +135,7 @@ def test_what_is_in_use_is_not_deleted(repository: Repository, store: RecordingS
     repository.delete_recording(ids[0], "x", now_ns=NOW_NS)
 
 
-def test_files_that_another_recording_has_too_stay(repository: Repository, store: RecordingStore) -> None:
+def test_files_that_another_recording_has_too_stay(repository: Repository, store: FolderStore) -> None:
     both = [
         repository.add_recording(store.store({"U.CFF": b"samples"}), motor=motor, now_ns=NOW_NS).recording
         for motor in (MOTOR, "FAN-A2")
@@ -147,7 +147,7 @@ def test_files_that_another_recording_has_too_stay(repository: Repository, store
 
 
 def test_an_announced_record_of_a_relay_that_left_the_plant_is_deleted(
-    repository: Repository, store: RecordingStore
+    repository: Repository, store: FolderStore
 ) -> None:
     announced = repository.announce_recording(RELAY, MOTOR, REMOTE, now_ns=NOW_NS)
     repository.register_gateway("ours", host="here", process_id=1, now_ns=NOW_NS)
@@ -164,9 +164,7 @@ def test_an_announced_record_of_a_relay_that_left_the_plant_is_deleted(
     assert life(state) is Life.REFUSED, "it is not pulled, also when the relay comes back"
 
 
-def test_deleting_a_recording_removes_no_files_of_others(
-    repository: Repository, store: RecordingStore
-) -> None:
+def test_deleting_a_recording_removes_no_files_of_others(repository: Repository, store: FolderStore) -> None:
     """Thousands of folders may be waiting: they are the background's work, not that of one request."""
     ids = [pulled(repository, store, name, name.encode()) for name in ("HR_1", "HR_2", "HR_3")]
     digests = [repository.recording(recording_id).digest for recording_id in ids]
@@ -187,7 +185,7 @@ def test_deleting_a_recording_removes_no_files_of_others(
     assert folders(store) == set()
 
 
-def test_its_relay_is_not_asked_for_it_again(repository: Repository, store: RecordingStore) -> None:
+def test_its_relay_is_not_asked_for_it_again(repository: Repository, store: FolderStore) -> None:
     recording_id = pulled(repository, store)
     ledger = RecordLedger(RELAY, MOTOR, repository)
     record = listed("HR_1")
@@ -199,7 +197,7 @@ def test_its_relay_is_not_asked_for_it_again(repository: Repository, store: Reco
     assert (state.life, state.is_decided) == (Life.DELETED, True)
 
 
-def test_a_record_whose_time_changed_stays_deleted(repository: Repository, store: RecordingStore) -> None:
+def test_a_record_whose_time_changed_stays_deleted(repository: Repository, store: FolderStore) -> None:
     """The relay's clock was set: all that it has is listed under other times, and pulled once more."""
     recording_id = pulled(repository, store)
     delete_recording(repository, store, recording_id, "a test", now_ns=NOW_NS)
@@ -221,7 +219,7 @@ def test_a_record_whose_time_changed_stays_deleted(repository: Repository, store
 
 
 def test_a_new_record_that_looks_like_a_deleted_one_is_pulled(
-    repository: Repository, store: RecordingStore
+    repository: Repository, store: FolderStore
 ) -> None:
     """Where the relay gives no times."""
     remote = RemoteRecord("HR_1", 30, 0)
@@ -248,7 +246,7 @@ def test_a_new_record_that_looks_like_a_deleted_one_is_pulled(
     assert life(state) is Life.STORED
 
 
-def test_a_deleted_recording_can_be_uploaded_again(repository: Repository, store: RecordingStore) -> None:
+def test_a_deleted_recording_can_be_uploaded_again(repository: Repository, store: FolderStore) -> None:
     recording_id = pulled(repository, store)
     delete_recording(repository, store, recording_id, "a test", now_ns=NOW_NS)
     again = repository.add_recording(
@@ -262,7 +260,7 @@ def test_a_deleted_recording_can_be_uploaded_again(repository: Repository, store
 
 
 def test_a_folder_removed_before_its_row_is_added_is_noticed(
-    repository: Repository, store: RecordingStore
+    repository: Repository, store: FolderStore
 ) -> None:
     recording_id = pulled(repository, store)
     stored = store.store({"HR_1.CFG": b"config", "HR_1.DAT": b"samples"})
@@ -274,7 +272,7 @@ def test_a_folder_removed_before_its_row_is_added_is_noticed(
 
 
 def test_uploads_and_deletions_of_the_same_content_lose_no_file(
-    repository: Repository, store: RecordingStore
+    repository: Repository, store: FolderStore
 ) -> None:
     """Whoever comes first: every recording has its folder, and no folder is without one in the end."""
     content = {"HR_1.CFG": b"config", "HR_1.DAT": b"samples"}
@@ -303,7 +301,7 @@ def test_uploads_and_deletions_of_the_same_content_lose_no_file(
 
 
 def test_a_known_record_uploaded_with_another_header_leaves_no_folder(
-    repository: Repository, store: RecordingStore
+    repository: Repository, store: FolderStore
 ) -> None:
     known = {"U.CFG": b"config", "U.DAT": b"samples"}
     first = repository.add_recording(store.store(known), motor=MOTOR, now_ns=NOW_NS).recording
@@ -315,7 +313,7 @@ def test_a_known_record_uploaded_with_another_header_leaves_no_folder(
 
 
 def test_a_folder_that_cannot_be_removed_is_removed_later(
-    repository: Repository, store: RecordingStore, tmp_path: Path
+    repository: Repository, store: FolderStore, tmp_path: Path
 ) -> None:
     recording_id = pulled(repository, store)
     in_the_way = store.root / "deleted"

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from service.configuration.settings import sqlite_url
-from service.recording_store.store import RecordingStore
+from service.recording_store.folder import FolderStore
 from service.retention.deletion import delete_recording, remove_discarded_folders
 from service.storage import Repository, connect
 from testing.service.plants import NOW_NS
@@ -16,7 +16,7 @@ from testing.service.plants import NOW_NS
 STEPS = ("nothing", "rows", "set aside", "released", "half removed")
 
 
-class KilledStore(RecordingStore):
+class KilledStore(FolderStore):
     """Its process is killed after it has set a folder aside, or has removed half of what was set aside."""
 
     step = ""
@@ -51,7 +51,7 @@ def delete_and_be_killed(directory: Path, recording_id: str, step: str) -> None:
 
 
 @pytest.mark.parametrize("database_url", ["sqlite"], indirect=True)
-def test_killed_at_each_step(repository: Repository, store: RecordingStore, tmp_path: Path) -> None:
+def test_killed_at_each_step(repository: Repository, store: FolderStore, tmp_path: Path) -> None:
     for step in STEPS:
         files = {"U.CFG": step.encode(), "U.DAT": b"samples"}
         stays = repository.add_recording(store.store({"S.CFF": b"x"}), motor="PUMP-A1", now_ns=NOW_NS)

@@ -16,7 +16,7 @@ from service.background.retention import Retention
 from service.cli.app import main
 from service.configuration.retention import RetentionSettings
 from service.configuration.settings import Settings, SettingsError
-from service.recording_store.store import RecordingStore
+from service.recording_store.folder import FolderStore
 from service.retention.batches import Batches
 from service.retention.rules import rules
 from service.storage import Repository, migrate, migrations
@@ -31,7 +31,7 @@ SETTLED_NS = round(SETTLING_S * SECOND_NS)
 
 
 def uploaded(
-    repository: Repository, store: RecordingStore, day: int, diagnosis: Diagnosis | None, motor: str = MOTOR
+    repository: Repository, store: FolderStore, day: int, diagnosis: Diagnosis | None, motor: str = MOTOR
 ) -> str:
     """A recording of some day, diagnosed at once, or rejected."""
     at_ns = NOW_NS + day * DAY_NS
@@ -65,7 +65,7 @@ def apply(settings: Settings, repository: Repository, day: float) -> dict[str, t
 
 
 def test_each_verdict_and_state_has_its_time(
-    repository: Repository, store: RecordingStore, tmp_path: Path
+    repository: Repository, store: FolderStore, tmp_path: Path
 ) -> None:
     kinds = {"healthy": healthy(), "fault": fault(), "undiagnosable": undiagnosable(), "rejected": None}
     ids = {
@@ -90,7 +90,7 @@ def test_each_verdict_and_state_has_its_time(
 
 
 def test_what_a_rule_deletes_is_told_in_the_audit_trail(
-    repository: Repository, store: RecordingStore, tmp_path: Path
+    repository: Repository, store: FolderStore, tmp_path: Path
 ) -> None:
     ids = [uploaded(repository, store, day, healthy()) for day in range(3)]
     before = repository.audit_entries(limit=1).items[0].number
@@ -107,9 +107,7 @@ def test_what_a_rule_deletes_is_told_in_the_audit_trail(
     assert sum(values["deleted"] for rule, values in told if rule == "retention.deletions_days") == 2
 
 
-def test_the_newest_and_the_baseline_stay(
-    repository: Repository, store: RecordingStore, tmp_path: Path
-) -> None:
+def test_the_newest_and_the_baseline_stay(repository: Repository, store: FolderStore, tmp_path: Path) -> None:
     ids = [uploaded(repository, store, day, healthy()) for day in range(8)]
     alone = uploaded(repository, store, 0, healthy(), "FAN-A2")
     repository.set_baseline(MOTOR, ids[:3], by=SERVICE, now_ns=NOW_NS)
@@ -121,7 +119,7 @@ def test_the_newest_and_the_baseline_stay(
 
 
 def test_an_old_record_that_comes_late_pushes_no_newer_one_out(
-    repository: Repository, store: RecordingStore, tmp_path: Path
+    repository: Repository, store: FolderStore, tmp_path: Path
 ) -> None:
     newest = uploaded(repository, store, 0, healthy())
     late = repository.add_recording(
@@ -152,7 +150,7 @@ class InterruptedRepository(Repository):
 
 
 def test_a_recording_whose_verdict_changes_meanwhile_stays(
-    repository: Repository, store: RecordingStore, engine: Engine, tmp_path: Path
+    repository: Repository, store: FolderStore, engine: Engine, tmp_path: Path
 ) -> None:
     ids = [uploaded(repository, store, day, healthy()) for day in range(3)]
 
@@ -168,7 +166,7 @@ def test_a_recording_whose_verdict_changes_meanwhile_stays(
 
 
 def test_a_recording_that_becomes_the_newest_meanwhile_stays(
-    repository: Repository, store: RecordingStore, engine: Engine, tmp_path: Path
+    repository: Repository, store: FolderStore, engine: Engine, tmp_path: Path
 ) -> None:
     ids = [uploaded(repository, store, day, healthy()) for day in range(2)]
     interrupted = InterruptedRepository(
@@ -179,7 +177,7 @@ def test_a_recording_that_becomes_the_newest_meanwhile_stays(
 
 
 def test_what_is_no_recording_has_its_times_too(
-    repository: Repository, store: RecordingStore, tmp_path: Path
+    repository: Repository, store: FolderStore, tmp_path: Path
 ) -> None:
     recording_id = uploaded(repository, store, 0, fault())
     repository.request_diagnosis(recording_id, now_ns=NOW_NS)
@@ -204,7 +202,7 @@ def test_what_is_no_recording_has_its_times_too(
 
 
 def test_without_settings_everything_is_kept(
-    repository: Repository, store: RecordingStore, tmp_path: Path
+    repository: Repository, store: FolderStore, tmp_path: Path
 ) -> None:
     uploaded(repository, store, 0, fault())
     uploaded(repository, store, 1, None)
@@ -215,7 +213,7 @@ def test_without_settings_everything_is_kept(
 
 
 def test_the_rules_are_applied_once_a_day_by_a_clock_that_can_be_trusted(
-    repository: Repository, store: RecordingStore, tmp_path: Path
+    repository: Repository, store: FolderStore, tmp_path: Path
 ) -> None:
     ids = [uploaded(repository, store, day, healthy()) for day in range(3)]
     retention = Retention(settings_of(tmp_path, healthy_days=2), repository, store)
@@ -232,7 +230,7 @@ def test_the_rules_are_applied_once_a_day_by_a_clock_that_can_be_trusted(
 
 @pytest.mark.parametrize("database_url", ["sqlite"], indirect=True)
 def test_the_command_shows_what_would_go_and_deletes_it(
-    repository: Repository, store: RecordingStore, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    repository: Repository, store: FolderStore, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     ids = [uploaded(repository, store, day, healthy()) for day in range(3)]
     config = tmp_path / "mcc.toml"

@@ -17,8 +17,7 @@ from core.units import SECONDS_PER_DAY
 from service.api import ApiContext, create_app
 from service.cli.app import main
 from service.configuration.settings import Settings
-from service.recording_store.store import RecordingStore
-from service.recording_store.unknown_folders import UnknownFolders
+from service.recording_store.folder import FolderStore
 from service.retention.deletion import delete_recording, remove_discarded_folders
 from service.retention.unknown_folders import KEPT_DAYS, SETTLED_S, Ages, UnknownFolderSweep
 from service.storage import Repository
@@ -30,7 +29,7 @@ REPEATS = 19
 ON_SQLITE = pytest.mark.parametrize("database_url", ["sqlite"], indirect=True)
 
 
-def folders(store: RecordingStore) -> set[str]:
+def folders(store: FolderStore) -> set[str]:
     return {path.name for path in store.root.glob("??/*")}
 
 
@@ -38,12 +37,12 @@ def known(repository: Repository) -> set[str | None]:
     return {entry.digest for entry in repository.recordings(limit=1000).items}
 
 
-def sweep(repository: Repository, store: RecordingStore, ages: Ages | None = None) -> UnknownFolderSweep:
-    return UnknownFolderSweep(repository, UnknownFolders(store.root), ages or Ages())
+def sweep(repository: Repository, store: FolderStore, ages: Ages | None = None) -> UnknownFolderSweep:
+    return UnknownFolderSweep(repository, store.unknown, ages or Ages())
 
 
 def test_a_known_record_under_other_headers_leaves_nothing(
-    repository: Repository, store: RecordingStore, tmp_path: Path
+    repository: Repository, store: FolderStore, tmp_path: Path
 ) -> None:
     """Nineteen uploads of a record of 10 MB, each with another header, left 190 MB."""
     context = ApiContext(Settings(data_directory=tmp_path), repository, store)
@@ -65,14 +64,14 @@ def test_a_known_record_under_other_headers_leaves_nothing(
 
 
 def store_and_be_killed(directory: Path) -> None:
-    store = RecordingStore(directory / "recordings")
+    store = FolderStore(directory / "recordings")
     store.store({"K.CFF": b"killed"})
     os.kill(os.getpid(), signal.SIGKILL)
 
 
 @ON_SQLITE
 def test_what_a_killed_service_leaves_is_moved_apart_and_deleted_later(
-    repository: Repository, store: RecordingStore, tmp_path: Path
+    repository: Repository, store: FolderStore, tmp_path: Path
 ) -> None:
     repository.add_recording(store.store({"E.CFF": b"known"}), motor="PUMP-A1", now_ns=NOW_NS)
     process = get_context("fork").Process(target=store_and_be_killed, args=(tmp_path,))
@@ -95,7 +94,7 @@ def test_what_a_killed_service_leaves_is_moved_apart_and_deleted_later(
     assert list((store.root / "unknown").iterdir()) == []
 
 
-def test_what_the_database_knows_again_is_put_back(repository: Repository, store: RecordingStore) -> None:
+def test_what_the_database_knows_again_is_put_back(repository: Repository, store: FolderStore) -> None:
     """The service ran for an hour with an old back-up of its database."""
     stored = store.store({"E.CFF": b"samples"})
     sweeping = sweep(repository, store, Ages(settled_s=0.0))
@@ -110,7 +109,7 @@ def test_what_the_database_knows_again_is_put_back(repository: Repository, store
 
 
 def test_a_folder_that_is_discarded_is_left_to_whoever_discards_it(
-    repository: Repository, store: RecordingStore
+    repository: Repository, store: FolderStore
 ) -> None:
     record = {"E.CFG": b"config", "E.DAT": b"samples"}
     repository.add_recording(store.store(record), motor="PUMP-A1", now_ns=NOW_NS)
@@ -123,7 +122,7 @@ def test_a_folder_that_is_discarded_is_left_to_whoever_discards_it(
 
 
 def test_a_sweep_in_the_midst_of_uploads_takes_no_recordings_files(
-    repository: Repository, store: RecordingStore
+    repository: Repository, store: FolderStore
 ) -> None:
     """With no hour of grace: a folder may be moved between the moment it is stored and that it is added."""
     ended = Event()
@@ -156,7 +155,7 @@ def test_a_sweep_in_the_midst_of_uploads_takes_no_recordings_files(
 
 
 @ON_SQLITE
-def test_what_a_person_puts_there_is_found_too(repository: Repository, store: RecordingStore) -> None:
+def test_what_a_person_puts_there_is_found_too(repository: Repository, store: FolderStore) -> None:
     (store.root / "ab").mkdir()
     (store.root / "ab" / "notes of somebody").mkdir()
     sweeping = sweep(repository, store, Ages(settled_s=-1.0))
@@ -167,7 +166,7 @@ def test_what_a_person_puts_there_is_found_too(repository: Repository, store: Re
 @ON_SQLITE
 def test_the_command_shows_and_moves_what_is_unknown(
     repository: Repository,
-    store: RecordingStore,
+    store: FolderStore,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],

@@ -9,7 +9,8 @@ from typing import TypeVar
 import pytest
 from sqlalchemy import Engine
 
-from service.recording_store.store import RecordingStore, StoredRecording
+from service.recording_store.recording import StoredRecording
+from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect, migrate
 from service.storage.records import RemoteRecord
 from service.storage.repository.recordings.recordings import AddedRecording

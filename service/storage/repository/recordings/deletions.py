@@ -12,7 +12,8 @@ from sqlalchemy.orm import Session
 
 from core.diagnosis.verdict import Verdict
 from service.audit.actions import AuditAction
-from service.recording_store.store import StoredFile, StoredRecording, waveform_digest
+from service.recording_store.contents import StoredFile, waveform_digest
+from service.recording_store.recording import StoredRecording
 from service.storage.errors import RecordingInUseError
 from service.storage.models import (
     BaselineRecordingRow,

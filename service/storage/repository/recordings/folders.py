@@ -5,7 +5,7 @@ from collections.abc import Callable, Collection
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from service.recording_store.store import StoredRecording
+from service.recording_store.recording import StoredRecording
 from service.storage.engine import one_at_a_time
 from service.storage.errors import FolderGoneError
 from service.storage.models import DiscardedFolderRow, RecordingRow
@@ -50,9 +50,9 @@ def lock_folder(session: Session, digest: str) -> None:
 
 
 def require_folder(session: Session, stored: StoredRecording) -> None:
-    """Keep the folder of a record that is about to be added. Raises FolderGoneError."""
+    """Keep the folder of a record that is about to be added. Raises FolderGoneError, OSError."""
     lock_folder(session, stored.digest)
-    if not stored.directory.is_dir():
+    if not stored.is_there():
         raise FolderGoneError(stored.digest)
 
 

@@ -9,7 +9,7 @@ from sqlalchemy.orm import Session
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
 from core.operation import Operation
 from service.audit.actions import AuditAction
-from service.recording_store.store import StoredRecording
+from service.recording_store.recording import StoredRecording
 from service.storage.errors import TooManyWaitingError
 from service.storage.models import (
     IedRow,

@@ -6,7 +6,7 @@ from sqlalchemy.orm import Session
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
 from core.operation import EXPECTED
 from core.units import NANOSECONDS_PER_DAY, NANOSECONDS_PER_SECOND
-from service.recording_store.store import StoredRecording
+from service.recording_store.recording import StoredRecording
 from service.storage.models import MotorRow, RecordingRequestRow, RecordingRow
 from service.storage.records import Series, SeriesEnd, SeriesHistory
 from service.storage.repository.recordings.folders import discard_folder, require_folder

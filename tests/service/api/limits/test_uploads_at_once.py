@@ -13,7 +13,8 @@ import pytest
 from service.api import ApiContext, create_app
 from service.api.limits.admission import Admission
 from service.api.limits.arrivals import ARRIVING_AT_ONCE
-from service.recording_store.store import RecordingStore, StoredRecording
+from service.recording_store.recording import StoredRecording
+from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from service.storage.errors import FolderGoneError
 from service.storage.repository.recordings.recordings import AddedRecording

@@ -15,7 +15,7 @@ from core.condition.observation import Observation
 from core.diagnosis.baseline import Baseline
 from core.diagnosis.stator import diagnose, learn_baseline
 from core.diagnosis.verdict import Diagnosis, Verdict
-from service.recording_store.store import RecordingStore
+from service.recording_store.folder import FolderStore
 from service.storage import Repository
 from service.storage.models import UnobservedRecordingRow
 from service.storage.records import ConditionPoint, FoldResult
@@ -40,7 +40,7 @@ NO_BASELINE: dict[str, object] = {
 class Plant:
     """Puts recordings into the database, each with contents of its own."""
 
-    def __init__(self, repository: Repository, store: RecordingStore) -> None:
+    def __init__(self, repository: Repository, store: FolderStore) -> None:
         self._repository, self._store, self._numbers = repository, store, count()
 
     def recording(
@@ -85,7 +85,7 @@ def fold(repository: Repository, recording_id: str, state: State, kind: Kind) ->
 
 
 @pytest.fixture
-def plant(repository: Repository, store: RecordingStore) -> Plant:
+def plant(repository: Repository, store: FolderStore) -> Plant:
     return Plant(repository, store)
 
 
@@ -123,7 +123,7 @@ def test_who_deletes_a_baseline_and_why_is_kept(client: httpx.Client, plant: Pla
 
 
 def test_a_worker_is_given_the_baselines_files(
-    client: httpx.Client, plant: Plant, repository: Repository, store: RecordingStore
+    client: httpx.Client, plant: Plant, repository: Repository, store: FolderStore
 ) -> None:
     ids = [plant.recording(healthy()) for _ in range(3)]
     client.put(BASELINE, json={"recording_ids": ids})

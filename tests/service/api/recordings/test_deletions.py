@@ -4,6 +4,7 @@ import httpx
 import pytest
 
 from service.api import ApiContext
+from service.recording_store.folder import FolderStore
 from service.storage import Repository
 from testing.service.job_runner import RUNNER
 from tests.service.api.recordings.test_recordings import FILES, upload
@@ -28,6 +29,7 @@ def test_a_wrong_upload_is_deleted_with_its_files(
     assert (deletion["reason"], deletion["deleted_by"]) == ("of another motor", "person")
     assert len(deletion["sha256"]) == 64
     assert client.get("/api/v1/deletions", params={"motor": "FAN-A2"}).json()["items"] == []
+    assert isinstance(context.store, FolderStore)
     assert list(context.store.root.glob("??/*")) == []
     status, document = upload(client, FILES)
     assert (status, document["id"] != recording) == (201, True), "who uploads it again means it"

@@ -10,6 +10,7 @@ from core.diagnosis.search import METHODS
 from core.machines.stator_models import MODELS
 from core.time_stamps import nanoseconds
 from service.api import ApiContext, create_app
+from service.recording_store.folder import FolderStore
 from service.storage import Repository
 from service.storage.records import RemoteRecord
 from testing.service.job_runner import RUNNER
@@ -223,6 +224,7 @@ def test_a_damaged_store_is_an_error_of_the_service(
 ) -> None:
     digest = repository.recording(recording).digest
     assert digest is not None
+    assert isinstance(context.store, FolderStore)
     context.store.entry(digest).write_bytes(b"changed")
     response = client.get(f"/api/v1/recordings/{recording}/file")
     assert response.status_code == 500

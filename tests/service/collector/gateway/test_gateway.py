@@ -28,7 +28,7 @@ from service.configuration.settings import Settings
 from service.demo import MOTORS
 from service.demo.addresses import free_ports
 from service.plant import Plant, read_plant
-from service.recording_store.store import RecordingStore
+from service.recording_store.folder import FolderStore
 from service.storage import LeaseLostError, Repository, connect
 from service.storage.states import LinkState
 from service.timing.backoff import Backoff
@@ -127,7 +127,7 @@ def gateway(hall: Hall, name: str, *, most: int = 100) -> Iterator[Gateway]:
         GatewayIdentity(name, "here", os.getpid()),
         hall.plant,
         Repository(connect(settings.database_url)),
-        RecordingStore(settings.recordings_directory),
+        FolderStore(settings.recordings_directory),
         settings,
         on_expiry=lambda: None,
     )
@@ -257,7 +257,7 @@ def test_a_gateway_that_cannot_write_what_it_measures_is_not_ready(hall: Hall) -
     # On a busy machine no link may fail: then nothing would be measured, and nothing refused.
     hall.settings = hall.settings.model_copy(update={"metering_period_s": 0.2, "request_timeout_s": 20.0})
     gateways = GatewayProcesses(hall.settings, hall.plant, hall.repository)
-    store = RecordingStore(hall.settings.recordings_directory)
+    store = FolderStore(hall.settings.recordings_directory)
     context = ApiContext(hall.settings, hall.repository, store, readiness={"collector": gateways.problem})
     with (
         running([gateways]),

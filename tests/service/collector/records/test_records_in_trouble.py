@@ -60,7 +60,7 @@ def files_of(bench: Bench, name: str) -> dict[str, bytes]:
     recording = bench.recording(name)
     if recording is None or recording.digest is None:
         return {}
-    folder = bench.store.find(recording.digest).directory
+    folder = bench.store.directory(recording.digest)
     listed = bench.repository.recording_files(recording.id)
     return {file.name: (folder / file.name).read_bytes() for file in listed}
 

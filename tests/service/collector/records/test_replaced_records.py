@@ -35,9 +35,11 @@ def test_a_record_replaced_between_its_files_is_fetched_again(
         assert len(recordings) == 1
         stored = here.store.find(recordings[0].digest or "")
         folder = tmp_path / "relays" / IED / scenario.profile.files.folder
-        for file in stored.directory.iterdir():
+        for file in here.store.directory(stored.digest).iterdir():
             assert file.read_bytes() == (folder / file.name).read_bytes()
-        assert np.array_equal(read(stored.entry).samples, read(folder / stored.entry.name).samples)
+        assert np.array_equal(
+            read(here.store.entry(stored.digest)).samples, read(folder / stored.entry_name).samples
+        )
 
 
 def test_records_of_two_folders_are_fetched(bench: Bench, tmp_path: Path) -> None:
@@ -74,7 +76,7 @@ def test_a_record_without_times_is_told_by_its_configuration(bench: Bench, relay
         assert eventually(lambda: bench.is_stored("HR_1"))
     (recording,) = bench.recordings()
     assert recording.digest is not None
-    directory = bench.store.find(recording.digest).directory
+    directory = bench.store.directory(recording.digest)
     assert (directory / "HR_1.CFG").read_bytes() == b"configuration 1"
     assert (directory / "HR_1.DAT").read_bytes() == b"samples 1"
 

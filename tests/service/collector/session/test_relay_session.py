@@ -12,7 +12,7 @@ from core.units import NANOSECONDS_PER_SECOND
 from mms import Client, DataAccessError
 from service.collector.session.relay_session import RelaySession
 from service.collector.session.session_policy import SessionPolicy
-from service.recording_store.store import Incoming
+from service.recording_store.arriving import Incoming
 from service.storage.states import AlarmKind, LinkState, RecordingRequestState, RecordingState
 from service.timing.backoff import Backoff
 from testing.waiting import eventually
@@ -35,7 +35,7 @@ def test_a_request_becomes_a_stored_record(bench: Bench, relay: ScriptedRelay) -
     assert request.triggered_ns is not None
     assert recording.digest is not None
     stored = bench.store.find(recording.digest)
-    assert (stored.directory / "HR_10001.DAT").read_bytes() == b"record 1"
+    assert (bench.store.directory(stored.digest) / "HR_10001.DAT").read_bytes() == b"record 1"
     assert relay.edges == 1
     assert relay.server.read(f"{CONTROL}.stVal") is False, "the bit is ready for the next edge"
 
@@ -241,7 +241,7 @@ def test_a_record_that_grows_is_pulled_whole(bench: Bench, relay: ScriptedRelay)
         assert eventually(lambda: [r.state for r in bench.recordings()] == [RecordingState.FETCHED])
     (recording,) = bench.recordings()
     assert recording.digest is not None
-    assert (bench.store.find(recording.digest).directory / "HR_1.DAT").read_bytes() == b"x" * 7
+    assert (bench.store.directory(recording.digest) / "HR_1.DAT").read_bytes() == b"x" * 7
 
 
 def test_a_record_too_large_is_rejected_with_its_recording_request(

@@ -72,10 +72,10 @@ def test_a_record_is_pulled_over_tls_with_a_password(bench: Bench, pki: Pki, tmp
         assert recording.digest is not None
         stored = here.store.find(recording.digest)
         made = tmp_path / "relays" / "R1" / "EVENTS"
-        assert sorted(file.name for file in stored.directory.iterdir()) == sorted(
+        assert sorted(file.name for file in here.store.directory(stored.digest).iterdir()) == sorted(
             file.name for file in made.iterdir()
         )
-        for file in stored.directory.iterdir():
+        for file in here.store.directory(stored.digest).iterdir():
             assert file.read_bytes() == (made / file.name).read_bytes()
 
 

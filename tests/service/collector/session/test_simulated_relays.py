@@ -93,7 +93,7 @@ def test_a_request_becomes_a_stored_record(
         assert recording.digest is not None
         stored = here.store.find(recording.digest)
         served_files = tmp_path / "relays" / IED / scenario.profile.files.folder
-        for file in stored.directory.iterdir():
+        for file in here.store.directory(stored.digest).iterdir():
             assert file.read_bytes() == (served_files / file.name).read_bytes()
 
 
@@ -161,7 +161,7 @@ def stored_unasked(bench: Bench) -> Recording:
     assert (entry.motor, entry.ied) == (MOTOR, bench.relay.name)
     assert bench.repository.recording_requests(limit=10).items == ()
     assert entry.digest is not None
-    return read(bench.store.find(entry.digest).entry)
+    return read(bench.store.entry(entry.digest))
 
 
 def test_the_clock_of_a_relay_that_cannot_be_triggered_is_known(bench: Bench, tmp_path: Path) -> None:

@@ -100,7 +100,7 @@ def test_a_record_under_a_name_that_was_listed_before_belongs_to_its_request(
     recording = bench.repository.recording(bench.requested(request_id).recording_id or "")
     assert old is not None
     assert recording.id != old.id
-    stored = bench.store.find(recording.digest or "").directory / "HR_1.DAT"
+    stored = bench.store.directory(recording.digest or "") / "HR_1.DAT"
     assert stored.read_bytes() == b"the record that was asked for"
 
 

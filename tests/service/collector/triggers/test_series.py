@@ -43,8 +43,8 @@ def diagnose_all(bench: Bench) -> None:
     """Do the jobs that wait, in this process."""
     repository = bench.repository
     while (claimed := repository.claim_job(now_ns=time.time_ns(), runner=RUNNER)) is not None:
-        entry = bench.store.entry(claimed.digest)
-        made = diagnose_recording(DiagnosisTask(entry, motor(MOTOR), claimed.job.method, claimed.job.model))
+        source = bench.store.source(claimed.digest)
+        made = diagnose_recording(DiagnosisTask(source, motor(MOTOR), claimed.job.method, claimed.job.model))
         assert isinstance(made, Diagnosed), made
         assert repository.finish_job(
             claimed.job.id,

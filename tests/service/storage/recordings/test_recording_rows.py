@@ -1,7 +1,8 @@
 import pytest
 
 from core.units import NANOSECONDS_PER_DAY
-from service.recording_store.store import RecordingStore, StoredRecording
+from service.recording_store.recording import StoredRecording
+from service.recording_store.store import RecordingStore
 from service.storage import NotFoundError, Repository
 from service.storage.records import ClockReading, RecordingEntry, RemoteRecord
 from service.storage.states import ClockQuality, RecordingRequestState, RecordingState

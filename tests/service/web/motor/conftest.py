@@ -7,7 +7,7 @@ import pytest
 
 from service.api import ApiContext
 from service.configuration.settings import Settings, sqlite_url
-from service.recording_store.store import RecordingStore
+from service.recording_store.folder import FolderStore
 from service.storage import Repository, connect
 from service.web.app import create_site
 from testing.service.database import make_database
@@ -22,7 +22,7 @@ def shown(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Shown]:
     data: Path = tmp_path_factory.mktemp("shown")
     make_database(data)
     engine = connect(sqlite_url(data))
-    repository, store = Repository(engine), RecordingStore(data / "recordings")
+    repository, store = Repository(engine), FolderStore(data / "recordings")
     repository.sync_plant(two_motor_plant())
     register_runner(repository)
     records = record(repository, store)

@@ -1,0 +1,104 @@
+"""A service, a relay, and workers on another host, with all recordings in a bucket of a real server."""
+
+import io
+import subprocess
+import sys
+import zipfile
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from service.client.rest_client import ServiceClient
+from service.storage import Repository, connect
+from service.storage.states import RecordingState
+from testing.service.processes import (
+    descendants,
+    is_alive,
+    running_service,
+    service_environment,
+    simulated_plant,
+)
+from testing.service.s3_server import BUCKET, Fault, S3Server, serving_s3
+from testing.waiting import eventually, wait_until
+
+START_LIMIT_S = 120.0
+RELAY, MOTOR = "A1_SEL710", "PUMP-A1"
+
+
+@pytest.fixture
+def s3(tmp_path: Path) -> Iterator[S3Server]:
+    with serving_s3(tmp_path) as server:
+        yield server
+
+
+@contextmanager
+def workers(directory: Path, settings: Mapping[str, str]) -> "Iterator[subprocess.Popen[bytes]]":
+    """A host of workers, with a data directory of its own."""
+    directory.mkdir()
+    environment = service_environment(directory / "data", dict(settings))
+    with (
+        (directory / "log").open("wb") as log,
+        subprocess.Popen(
+            [sys.executable, "-m", "service.cli", "work"], env=environment, stderr=log
+        ) as process,
+    ):
+        below: list[int] = []
+        try:
+            yield process
+        finally:
+            below = descendants(process.pid)
+            process.kill()
+            process.wait()
+            assert eventually(lambda: not any(is_alive(one) for one in below), 20)
+
+
+@pytest.mark.timeout(600)  # a simulator, a service and a host of workers load the numbers
+def test_a_record_comes_by_the_bucket_to_the_other_host_and_to_the_page(
+    tmp_path: Path, postgresql_url: str, s3: S3Server, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name, value in s3.environment.items():
+        monkeypatch.setenv(name, value)
+    settings = {
+        "MCC_DATABASE_URL": postgresql_url,
+        "MCC_WORKERS": "1",
+        "MCC_RECORDINGS_URL": f"s3://{BUCKET}/plant",
+        "MCC_POLL_PERIOD_S": "0.5",
+    }
+    engine = connect(postgresql_url)
+    repository = Repository(engine)
+    (tmp_path / "service").mkdir()
+    with (
+        simulated_plant(tmp_path, [RELAY]) as plant,
+        running_service(tmp_path / "service", plant.scd, **settings) as service,
+        ServiceClient(service.url) as client,
+        workers(tmp_path / "host", {**settings, "MCC_SCD": str(plant.scd)}) as host,
+    ):
+        wait_until(lambda: len(repository.job_runners()) == 2, within_s=START_LIMIT_S)
+        by_host = next(one.id for one in repository.job_runners() if one.process_id == host.pid)
+        assert by_host
+        # The store is away while the relay records: the record waits in the relay.
+        s3.fail(Fault.BUSY)
+        wait_until(lambda: "SlowDown" in (client.what_is_not_ready() or ""), within_s=60)
+        client.request_recording(MOTOR)
+        wait_until(lambda: plant.records(), within_s=60)
+        wait_until(
+            lambda: [one.state for one in repository.recordings(limit=5).items] == [RecordingState.ANNOUNCED],
+            within_s=60,
+        )
+        s3.fail(Fault.NONE)
+        wait_until(
+            lambda: [one.state for one in repository.recordings(limit=5).items] == [RecordingState.DIAGNOSED],
+            within_s=120,
+        )
+        (recording,) = repository.recordings(limit=5).items
+        waveform = client.get(f"/recordings/{recording.id}/waveform")
+        assert waveform["channels"]
+        archive = zipfile.ZipFile(io.BytesIO(client.download(recording.id)[1]))
+        relayed = {path.name.upper(): path.read_bytes() for path in plant.events(RELAY).iterdir()}
+        assert {name: archive.read(name) for name in archive.namelist()} == relayed
+        assert not (service.data / "recordings").exists()
+        assert list((service.data / "arriving").glob("*/*")) == []
+    assert len(s3.keys_of()) == len(relayed)
+    engine.dispose()
