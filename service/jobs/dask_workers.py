@@ -184,7 +184,10 @@ def _software() -> tuple[str, ...]:
 
 
 def _silence() -> None:
-    """Leave it to the command to say that a connection is lost; Dask tells it in many lines."""
+    """Leave it to the command to say that a connection is lost; Dask and Tornado tell it in many lines."""
     for name in logging.root.manager.loggerDict:
-        if name.partition(".")[0] == "distributed":  # Dask gives several of them levels of their own
+        if name.partition(".")[0] in {
+            "distributed",
+            "tornado",
+        }:  # Dask gives several of them levels of their own
             logging.getLogger(name).setLevel(logging.CRITICAL)
