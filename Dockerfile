@@ -6,8 +6,8 @@ RUN python -m venv /opt/statorwatch
 WORKDIR /src
 # The libraries come first: they change seldom, and this layer is then kept.
 COPY pyproject.toml constraints.txt ./
-# PostgreSQL's driver is among them, since an image cannot be added to.
-RUN python -c "import tomllib; p = tomllib.load(open('pyproject.toml', 'rb'))['project']; print(*p['dependencies'], *p['optional-dependencies']['postgres'], sep='\n')" > requirements.txt \
+# PostgreSQL's driver and the client of S3-compatible stores are among them, since an image cannot be added to.
+RUN python -c "import tomllib; p = tomllib.load(open('pyproject.toml', 'rb'))['project']; print(*p['dependencies'], *p['optional-dependencies']['postgres'], *p['optional-dependencies']['s3'], sep='\n')" > requirements.txt \
  && /opt/statorwatch/bin/pip install --constraint constraints.txt --requirement requirements.txt
 COPY . .
 # What builds the wheel, pinned too: pip up to 25.2 reads the first of the two for it, later ones the second.

@@ -37,7 +37,7 @@ from service.process.installation import installation_id
 from service.process.single_instance import exclusive
 from service.process.termination import Termination
 from service.recording_store.errors import StoreError
-from service.recording_store.opening import open_store
+from service.recording_store.opening import open_store, store_warnings
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect, migrate
 from service.storage.answering import answering
@@ -173,6 +173,8 @@ def checked_plant(settings: Settings) -> Plant:
         log.error("a channel cannot be used; its messages wait", problem=str(problem))
     for warning in warnings(settings.notifications, sites):
         log.warning("notifications", warning=warning)
+    for warning in store_warnings(settings):
+        log.warning("the store of the recordings", warning=warning)
     for relay in clear_passwords(settings.relays, [relay.name for relay in plant.relays]):
         log.warning("the relay's password goes over the network in clear: configure TLS for it", relay=relay)
     return plant

@@ -210,13 +210,14 @@ def _fetched(bucket: Bucket, place: str, digest: str, directory: Path) -> tuple[
             f"recording {digest}: expected at most {MOST_FILES} files and {MOST_BYTES} bytes in {place}, "
             f"found {len(objects)} and {size_bytes}"
         )
-    files = []
-    for one in objects:
-        name = one.key.removeprefix(folder)
+    names = [one.key.removeprefix(folder) for one in objects]
+    for name in names:
         if not is_stored_name(name):
             raise RecordingStoreError(
                 f"recording {digest}: expected files such as C_0001.CFG in {place}, found {name[:100]!r}"
             )
+    files = []
+    for name, one in zip(names, objects, strict=True):
         with (directory / name).open("xb") as sink:
             files.append(StoredFile(name, one.size_bytes, bucket.get(one.key, one.size_bytes, sink)))
     if manifest_digest(files) != digest:

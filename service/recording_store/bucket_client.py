@@ -4,6 +4,7 @@ boto3 finds endpoint, region and credentials as every S3 client does: in the env
 the machine that it runs on. It is imported when the first request is made, and by nobody else.
 """
 
+import re
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -14,7 +15,9 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, BinaryIO, Final
 
+from core.error_words import one_line
 from service.configuration.recordings_url import BucketPlace
+from service.recording_store import endpoint
 from service.recording_store.errors import RecordingStoreError, StoreError, StoreUnreachableError
 
 CONNECT_S, ANSWER_S, ATTEMPTS = 3.0, 10.0, 2
@@ -25,8 +28,11 @@ TRANSFER_S, LEAST_BYTES_PER_S = 20.0, 100_000.0
 """A transfer may take so long, and what its bytes take at the slowest rate."""
 CHUNK_BYTES: Final = 1 << 16
 CONNECTIONS = 32
+MOST_SHOWN, MOST_OF_A_CODE = 300, 60
+"""Of what the library and the store say, so many characters are told."""
 
-_GONE = frozenset({"NoSuchKey", "404", "NotFound"})
+_GONE = "NoSuchKey"
+"""A 404 without this code is a proxy's, or that of another server: no recording is at fault."""
 _LIKE_AN_OUTAGE = frozenset({"NoSuchBucket", "SlowDown", "RequestTimeout", "RequestTimeTooSkewed"})
 
 
@@ -43,9 +49,14 @@ class StoredObject:
     size_bytes: int
 
 
+def has_boto3() -> bool:
+    """Return whether the library is installed."""
+    return find_spec("boto3") is not None
+
+
 def require_boto3() -> None:
     """Raise StoreError where the library is not installed."""
-    if find_spec("boto3") is None:
+    if not has_boto3():
         raise StoreError(
             'recordings_url: expected the library boto3, found none: pip install "statorwatch[s3]"'
         )
@@ -53,9 +64,10 @@ def require_boto3() -> None:
 
 @lru_cache(maxsize=2)
 def _client(*, quick: bool) -> Any:
-    """Return a client of this process, which any thread may use. Raises what boto3 does."""
+    """Return a client of this process, which any thread may use. Raises StoreError, and what boto3 does."""
     import boto3
     from botocore.config import Config
+    from botocore.exceptions import BotoCoreError
 
     connect_s, answer_s = (QUICK_CONNECT_S, QUICK_ANSWER_S) if quick else (CONNECT_S, ANSWER_S)
     config = Config(
@@ -69,7 +81,30 @@ def _client(*, quick: bool) -> Any:
         response_checksum_validation="when_required",
         s3={"payload_signing_enabled": True},
     )
-    return boto3.session.Session().client("s3", config=config)
+    try:
+        client = boto3.session.Session().client("s3", config=config)
+    except BotoCoreError:
+        raise
+    except ValueError:  # boto3 would tell the URL, which may have a password in it
+        raise StoreUnreachableError(f"{endpoint.WANTED}, found another one") from None
+    endpoint.require_sound(client.meta.endpoint_url)
+    return client
+
+
+def endpoint_problem() -> str | None:
+    """Return what is odd about the endpoint that this process finds, or None. Nobody is asked."""
+    from botocore.exceptions import BotoCoreError
+
+    try:
+        url = _client(quick=True).meta.endpoint_url
+    except (StoreError, BotoCoreError) as error:
+        return one_line(str(error))[:MOST_SHOWN]
+    if endpoint.goes_in_clear(url):
+        return (
+            f"recordings go over the network in clear to {url}: give the store TLS and its endpoint https "
+            "(AWS_ENDPOINT_URL_S3)"
+        )
+    return None
 
 
 def forget_clients() -> None:
@@ -93,7 +128,7 @@ class Bucket:
         """Write an object of this size to a file; return its SHA-256. Raises also ObjectGoneError."""
         digest, left = sha256(), size_bytes
         end_s = time.monotonic() + _transfer_limit_s(size_bytes)
-        with self._asking(f"reading {key}"):
+        with self._asking(f"reading {key}", of_an_object=True):
             answer = _client(quick=False).get_object(Bucket=self._place.bucket, Key=self._key(key))
             # The connection itself: boto3's own read waits for more than has come, and so past the limit.
             with answer["Body"] as raw:
@@ -102,19 +137,26 @@ class Bucket:
                     digest.update(chunk)
                     sink.write(chunk)
                     left -= len(chunk)
+        if left > 0 and answer.get("ContentLength", size_bytes) >= size_bytes:
+            # Otherwise it is another object than was listed, which its hash tells.
+            raise StoreUnreachableError(
+                f"{self._place}: reading {key}: expected {size_bytes} bytes, found the connection to end "
+                f"after {size_bytes - left}"
+            )
         return digest.hexdigest()
 
     def objects(self, below: str, most: int | None = None) -> Iterator[StoredObject]:
         """Yield the objects whose keys begin so, in the order of the keys."""
-        with self._asking(f"listing {below}"):
+        with self._asking(f"listing {below}".rstrip()):
             pages = _client(quick=True).get_paginator("list_objects_v2")
             options = {} if most is None else {"MaxItems": most, "PageSize": most}
-            first = len(self._place.prefix)
             for page in pages.paginate(
                 Bucket=self._place.bucket, Prefix=self._key(below), PaginationConfig=options
             ):
+                if "Name" not in page:  # of the bucket
+                    raise self._is_no_listing(below, "another answer")
                 for one in page.get("Contents", ()):
-                    yield StoredObject(one["Key"][first:], one["LastModified"].timestamp(), one["Size"])
+                    yield self._listed(one, below)
 
     def delete(self, key: str) -> None:
         """Delete an object, which may be gone already."""
@@ -124,41 +166,60 @@ class Bucket:
     def copy(self, key: str, to: str) -> None:
         """Have the store copy an object. Raises also ObjectGoneError."""
         source = {"Bucket": self._place.bucket, "Key": self._key(key)}
-        with self._asking(f"copying {key}"):
+        with self._asking(f"copying {key}", of_an_object=True):
             _client(quick=False).copy_object(Bucket=self._place.bucket, Key=self._key(to), CopySource=source)
 
     def _key(self, key: str) -> str:
         return self._place.prefix + key
 
+    def _listed(self, one: dict[str, Any], below: str) -> StoredObject:
+        """Return an object of a listing. Raises StoreUnreachableError where it is none of those asked for."""
+        key, since, size_bytes = one.get("Key", ""), one.get("LastModified"), one.get("Size", -1)
+        if not key.startswith(self._key(below)) or since is None or size_bytes < 0:
+            raise self._is_no_listing(below, f"{key[:MOST_SHOWN]!r} of {size_bytes} bytes")
+        return StoredObject(key[len(self._place.prefix) :], since.timestamp(), size_bytes)
+
+    def _is_no_listing(self, below: str, found: str) -> StoreUnreachableError:
+        return StoreUnreachableError(
+            f"{self._place}: listing {below}: expected keys below it, with times and sizes, from an "
+            f"S3-compatible store, found {found}: is the endpoint right (AWS_ENDPOINT_URL_S3)?"
+        )
+
     @contextmanager
-    def _asking(self, what: str) -> Iterator[None]:
-        """Turn errors of the library into ours."""
+    def _asking(self, what: str, *, of_an_object: bool = False) -> Iterator[None]:
+        """Turn errors of the library into ours; of_an_object: which may be gone."""
         require_boto3()
-        from botocore.exceptions import BotoCoreError, ClientError, NoCredentialsError
+        from botocore import exceptions
+        from botocore.parsers import ResponseParserError
         from urllib3.exceptions import HTTPError
 
+        about = f"{self._place}: {what}"
         try:
             yield
-        except ClientError as error:
-            raise self._refused(what, error.response) from error
-        except NoCredentialsError as error:
+        except exceptions.ClientError as error:
+            if of_an_object and error.response.get("Error", {}).get("Code") == _GONE:
+                raise ObjectGoneError(f"{about}: expected an object, found none") from error
+            raise self._refused(about, error.response) from error
+        except exceptions.NoCredentialsError as error:
             forget_clients()  # they may be there by the next request
             raise StoreUnreachableError(
-                f"{self._place}: {what}: expected credentials such as AWS_ACCESS_KEY_ID and "
-                "AWS_SECRET_ACCESS_KEY, or a profile, found none"
+                f"{about}: expected credentials such as AWS_ACCESS_KEY_ID and AWS_SECRET_ACCESS_KEY, or a "
+                "profile, found none"
             ) from error
-        except (BotoCoreError, HTTPError) as error:
-            reason = " ".join(str(error).split())
+        except (exceptions.ConnectionError, exceptions.HTTPClientError, HTTPError) as error:
+            raise StoreUnreachableError(f"{about}: the store does not answer: {_reason(error)}") from error
+        except ResponseParserError as error:
             raise StoreUnreachableError(
-                f"{self._place}: {what}: the store does not answer: {reason[:300]}"
+                f"{about}: expected the answer of an S3-compatible store, found another one: is the endpoint "
+                "right (AWS_ENDPOINT_URL_S3)?"
             ) from error
+        except exceptions.BotoCoreError as error:  # a profile, a region, a listing without an end
+            forget_clients()
+            raise StoreUnreachableError(f"{about}: the store cannot be asked: {_reason(error)}") from error
 
-    def _refused(self, what: str, answer: dict[str, Any]) -> OSError | RecordingStoreError:
-        code = str(answer.get("Error", {}).get("Code", "unknown"))
+    def _refused(self, about: str, answer: dict[str, Any]) -> StoreError:
+        code = one_line(str(answer.get("Error", {}).get("Code", "unknown")))[:MOST_OF_A_CODE]
         status = int(answer.get("ResponseMetadata", {}).get("HTTPStatusCode", 0))
-        about = f"{self._place}: {what}"
-        if code in _GONE:
-            return ObjectGoneError(f"{about}: expected an object, found none")
         if code == "NoSuchBucket":
             return StoreUnreachableError(
                 f"{about}: expected the bucket {self._place.bucket}, found none: make it, or correct "
@@ -170,8 +231,17 @@ class Bucket:
                 f"{about}: the store refuses it ({code}): expected credentials that may list, read, write "
                 "and delete below this place"
             )
-        kind = StoreUnreachableError if status >= 500 or code in _LIKE_AN_OUTAGE else StoreError
+        is_outage = status == 404 or status >= 500 or code in _LIKE_AN_OUTAGE
+        kind = StoreUnreachableError if is_outage else StoreError
         return kind(f"{about}: the store answers {status} {code}")
+
+
+def _reason(error: Exception) -> str:
+    """Return the library's words on one line, without the query of a URL, and the system's if it has some."""
+    words = re.sub(r"\?[^\s\"']*", "", one_line(str(error)))[:MOST_SHOWN]
+    cause = getattr(getattr(error, "kwargs", {}).get("error"), "__cause__", None)
+    system = cause.strerror if isinstance(cause, OSError) else None
+    return f"{words} ({system})" if system else words
 
 
 class _Timed:

@@ -1,12 +1,12 @@
 """Opens the store of the recordings that the settings name: a folder, or a bucket."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from service.configuration.recordings_url import BucketPlace
 from service.configuration.settings import Settings
 from service.recording_store.bucket import BucketStore
-from service.recording_store.bucket_client import require_boto3
+from service.recording_store.bucket_client import endpoint_problem, has_boto3, require_boto3
 from service.recording_store.errors import StoreError
 from service.recording_store.folder import FolderStore
 from service.recording_store.store import RecordingStore
@@ -60,6 +60,14 @@ def require_usable(settings: Settings) -> None:
     """Raise StoreError where the program lacks what the store needs."""
     if settings.recordings_url is not None:
         require_boto3()
+
+
+def store_warnings(settings: Settings) -> Sequence[str]:
+    """Return what is odd about the way to the store, as this process finds it. Nobody is asked."""
+    if settings.recordings_url is None or not has_boto3():
+        return ()
+    problem = endpoint_problem()
+    return () if problem is None else (f"recordings_url: {problem}",)
 
 
 def own_folders(settings: Settings) -> Mapping[str, Path]:

@@ -15,7 +15,7 @@ from service.notifications.checking import channel_problems, report_problems, ro
 from service.plant import Plant
 from service.plant.files import examine_plant
 from service.recording_store.errors import StoreError
-from service.recording_store.opening import own_folders, require_usable
+from service.recording_store.opening import own_folders, require_usable, store_warnings
 from service.storage import StorageError, connect
 
 
@@ -45,6 +45,7 @@ def check(config: Path | None) -> CheckedPlant:
     problems.extend(_database(settings, source))
     problems.extend(_directories(settings, source))
     problems.extend(_recordings(settings, source))
+    problems.warnings.extend(store_warnings(settings))
     problems.extend(channel_problems(settings.notifications, source))
     if plant is not None:
         sites = [site.name for site in plant.sites]

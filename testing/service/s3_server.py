@@ -11,14 +11,17 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from enum import StrEnum
+from functools import cached_property
 from pathlib import Path
 from typing import Any
+from urllib.parse import parse_qs
 from urllib.request import urlopen
 
 from testing.ports import LOOPBACK, free_port
 from testing.waiting import wait_until
 
 BUCKET = "recordings"
+SECRET = "a secret of the tests"  # noqa: S105 - nobody's
 START_LIMIT_S = 120.0
 ERROR = "<?xml version='1.0'?><Error><Code>{code}</Code><Message>as told</Message></Error>"
 READY = "/moto-api/"
@@ -36,7 +39,27 @@ class Fault(StrEnum):
     DENIED = "denied"
     STALLS = "stalls"
     TRICKLES = "trickles"
-    TALKS_NONSENSE = "nonsense"
+    """As it sends objects; its listings come at once."""
+    IS_A_PAGE = "a page"
+    IS_NO_XML = "no xml"
+    IS_NOT_THERE = "404"
+    LISTS_OTHERS = "others"
+    LISTS_NEGATIVE_SIZES = "negative sizes"
+
+
+LISTING = (
+    "<ListBucketResult><Name>recordings</Name><KeyCount>1</KeyCount><Contents><Key>{key}</Key>"
+    "<LastModified>2026-01-01T00:00:00Z</LastModified><Size>{size}</Size></Contents></ListBucketResult>"
+)
+NONSENSE: Mapping[Fault, Callable[[str], tuple[str, str]]] = {
+    Fault.IS_A_PAGE: lambda _: ("200 OK", "<html>it works</html>"),
+    Fault.IS_NO_XML: lambda _: ("200 OK", "it works"),
+    Fault.IS_NOT_THERE: lambda _: ("404 Not Found", "<html>nothing here</html>"),
+    Fault.LISTS_OTHERS: lambda _: ("200 OK", LISTING.format(key="elsewhere/E.CFG", size=5)),
+    Fault.LISTS_NEGATIVE_SIZES: lambda below: ("200 OK", LISTING.format(key=f"{below}E.CFG", size=-5)),
+}
+"""What one answers to everything that is no S3-compatible store, or one with somebody inside; the key
+prefix that is asked for is known to it."""
 
 
 class S3Server:
@@ -59,7 +82,7 @@ class S3Server:
         return {
             "AWS_ENDPOINT_URL_S3": self.url,
             "AWS_ACCESS_KEY_ID": "tests",
-            "AWS_SECRET_ACCESS_KEY": "a secret of the tests",
+            "AWS_SECRET_ACCESS_KEY": SECRET,
             "AWS_DEFAULT_REGION": "us-east-1",
             "AWS_CONFIG_FILE": os.devnull,
             "AWS_SHARED_CREDENTIALS_FILE": os.devnull,
@@ -80,13 +103,17 @@ class S3Server:
 
     def client(self) -> Any:
         """A client of the test's own, to look and to do damage."""
+        return self._client
+
+    @cached_property
+    def _client(self) -> Any:
         import boto3
 
         return boto3.client(
             "s3",
             endpoint_url=self.url,
             aws_access_key_id="tests",
-            aws_secret_access_key="a secret of the tests",  # noqa: S106 - nobody's
+            aws_secret_access_key=SECRET,
             region_name="us-east-1",
         )
 
@@ -130,20 +157,23 @@ def failing(application: Application, faults: Path) -> Application:
     def answer(environment: Mapping[str, Any], start: Callable[..., Any]) -> Iterable[bytes]:
         if environment["PATH_INFO"].startswith(READY):
             return application(environment, start)
-        match Fault(faults.read_text()):
+        fault = Fault(faults.read_text())
+        match fault:
             case Fault.BUSY:
                 return _error("503 Slow Down", "SlowDown", start)
             case Fault.DENIED:
                 return _error("403 Forbidden", "AccessDenied", start)
-            case Fault.TALKS_NONSENSE:
-                start("200 OK", [("Content-Type", "application/xml")])
-                return [b"<html>it works</html>"]
             case Fault.STALLS:
                 end_s = time.monotonic() + LONGEST_STALL_S
                 while Fault(faults.read_text()) is Fault.STALLS and time.monotonic() < end_s:
                     time.sleep(0.05)
-            case Fault.TRICKLES:
+            case Fault.TRICKLES if "list-type" not in environment["QUERY_STRING"]:
                 return _slowly(application(environment, start))
+            case _ if fault in NONSENSE:
+                asked = parse_qs(environment["QUERY_STRING"]).get("prefix", [""])[0]
+                status, body = NONSENSE[fault](asked)
+                start(status, [("Content-Type", "application/xml")])
+                return [body.encode()]
         return application(environment, start)
 
     return answer

@@ -14,13 +14,14 @@ from pathlib import Path
 import pytest
 
 from core.diagnosis.methods import DEFAULT_METHOD
+from service.configuration.recordings_url import BucketPlace
 from service.jobs import JobRunner
 from service.jobs.limits import JobLimits
 from service.jobs.worker import diagnose_recording, prepare_worker
 from service.storage.states import JobState
 from service.timing.backoff import Backoff
 from testing.service.archive import Archive, make_archive
-from testing.service.s3_server import BUCKET, serving_s3
+from testing.service.s3_server import S3Server
 from testing.waiting import wait_until
 
 MCC = (sys.executable, "-m", "service.cli", "rediagnose", "--batch")
@@ -39,6 +40,21 @@ def archive(tmp_path: Path) -> Iterator[Archive]:
     archive = make_archive(tmp_path, RECORDS)
     yield archive
     archive.engine.dispose()
+
+
+@pytest.fixture(scope="module")
+def diagnosed(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Archive]:
+    """An archive whose recordings a service has diagnosed."""
+    archive = make_archive(tmp_path_factory.mktemp("diagnosed"), RECORDS)
+    diagnose_by_the_service(archive)
+    yield archive
+    archive.engine.dispose()
+
+
+@pytest.fixture(scope="module")
+def by_the_service(diagnosed: Archive) -> list[str]:
+    """What the service stored of each recording: the same of the same in another archive."""
+    return diagnosed.documents()
 
 
 def start(archive: Archive, *words: str) -> "subprocess.Popen[str]":
@@ -86,9 +102,8 @@ def diagnose_by_the_service(archive: Archive) -> None:
         runner.stop()
 
 
-def test_a_batch_gives_what_the_service_gives_and_once(archive: Archive) -> None:
-    diagnose_by_the_service(archive)
-    by_the_service = archive.documents()
+def test_a_batch_gives_what_the_service_gives_and_once(diagnosed: Archive, by_the_service: list[str]) -> None:
+    archive = diagnosed
     now = datetime.now(UTC).isoformat()
     assert run(archive, "--model", MODEL, "--processes", "1") == told(0, RECORDS)
     assert run(archive, "--model", MODEL, "--processes", "2", "--made-before", now) == told(RECORDS, 0)
@@ -111,10 +126,8 @@ def test_a_batch_that_is_killed_goes_on(archive: Archive) -> None:
 
 
 @contextmanager
-def cluster(
-    directory: Path, port: int = 0, workers: int = 1
-) -> Iterator[tuple[str, "subprocess.Popen[str]"]]:
-    """A scheduler and its workers, as people start them; the address, and the scheduler's process."""
+def cluster(directory: Path, port: int = 0) -> Iterator[tuple[str, "subprocess.Popen[str]"]]:
+    """A scheduler and its worker, as people start them; the address, and the scheduler's process."""
     dask = (sys.executable, "-m", "dask")
     with ExitStack() as ending:
 
@@ -126,10 +139,9 @@ def cluster(
         scheduler = begin("scheduler", "--host", "127.0.0.1", "--port", str(port), "--no-dashboard")
         assert scheduler.stderr is not None
         address = next(found[0] for line in scheduler.stderr if (found := re.search(r"tcp://[\d.:]+", line)))
-        for _ in range(workers):
-            worker = begin("worker", address, "--nthreads", "1", "--host", "127.0.0.1", "--no-dashboard")
-            assert worker.stderr is not None
-            assert any("Registered to" in line for line in worker.stderr)
+        worker = begin("worker", address, "--nthreads", "1", "--host", "127.0.0.1", "--no-dashboard")
+        assert worker.stderr is not None
+        assert any("Registered to" in line for line in worker.stderr)
         yield address, scheduler
 
 
@@ -159,33 +171,19 @@ def test_a_scheduler_that_dies_is_told_in_one_line_and_the_batch_goes_on(
     assert archive.made() == [1] * RECORDS
 
 
-def test_workers_that_share_a_bucket_alone_give_what_the_service_gives(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+def test_a_worker_that_sees_a_bucket_alone_gives_what_the_service_gives(
+    tmp_path: Path, s3: S3Server, place: BucketPlace, by_the_service: list[str]
 ) -> None:
-    """The workers see no data directory; the scheduler dies in the middle, and the batch goes on."""
+    """A task names the recording, the environment the store; it has no settings and no database."""
     elsewhere = tmp_path / "elsewhere"
     elsewhere.mkdir()
-    with serving_s3(tmp_path) as s3:
-        for name, value in s3.environment.items():
-            monkeypatch.setenv(name, value)
-        archive = make_archive(tmp_path, RECORDS, f"s3://{BUCKET}/archive")
-        diagnose_by_the_service(archive)
-        by_the_service = archive.documents()
-        again = ("--model", MODEL, "--made-before", datetime.now(UTC).isoformat())
-        with (
-            cluster(elsewhere, workers=2) as (address, scheduler),
-            start(archive, "--scheduler", address, *again) as process,
-        ):
-            wait_until(lambda: sum(archive.made()) >= RECORDS + 2, within_s=60)
-            scheduler.kill()
-            _, complained = process.communicate(timeout=60)
-        done = sum(archive.made()) - RECORDS
-        assert f"{RECORDS - done} recordings are left" in complained
-        with cluster(elsewhere, workers=2) as (address, _):
-            assert run(archive, "--scheduler", address, *again) == told(RECORDS - done, done)
-        assert archive.made() == [2] * RECORDS
-        assert archive.documents() == by_the_service
-        archive.engine.dispose()
+    archive = make_archive(tmp_path, RECORDS, str(place))
+    with cluster(elsewhere) as (address, _):
+        assert run(archive, "--scheduler", address, "--model", MODEL) == told(RECORDS, 0)
+    assert archive.documents() == by_the_service
+    assert not (archive.settings.data_directory / "recordings").exists()
+    assert len([key for key in s3.keys_of() if key.startswith(place.prefix)]) == RECORDS
+    archive.engine.dispose()
 
 
 def test_an_edited_motors_file_asks_for_the_service_first(archive: Archive, tmp_path: Path) -> None:

@@ -1,4 +1,8 @@
-"""A service, a relay, and workers on another host, with all recordings in a bucket of a real server."""
+"""A service, a relay, and workers on another host, with all recordings in a bucket of a real server.
+
+Its parts are tested by themselves: the relay's (collector/records/test_store_away.py), the worker's
+(test_rediagnosis.py), the API's (api/recordings/test_recordings_in_a_bucket.py).
+"""
 
 import io
 import subprocess
@@ -11,6 +15,7 @@ from pathlib import Path
 import pytest
 
 from service.client.rest_client import ServiceClient
+from service.configuration.recordings_url import BucketPlace
 from service.storage import Repository, connect
 from service.storage.states import RecordingState
 from testing.service.processes import (
@@ -20,17 +25,11 @@ from testing.service.processes import (
     service_environment,
     simulated_plant,
 )
-from testing.service.s3_server import BUCKET, Fault, S3Server, serving_s3
+from testing.service.s3_server import Fault, S3Server
 from testing.waiting import eventually, wait_until
 
 START_LIMIT_S = 120.0
 RELAY, MOTOR = "A1_SEL710", "PUMP-A1"
-
-
-@pytest.fixture
-def s3(tmp_path: Path) -> Iterator[S3Server]:
-    with serving_s3(tmp_path) as server:
-        yield server
 
 
 @contextmanager
@@ -54,16 +53,15 @@ def workers(directory: Path, settings: Mapping[str, str]) -> "Iterator[subproces
             assert eventually(lambda: not any(is_alive(one) for one in below), 20)
 
 
+@pytest.mark.campaign
 @pytest.mark.timeout(600)  # a simulator, a service and a host of workers load the numbers
 def test_a_record_comes_by_the_bucket_to_the_other_host_and_to_the_page(
-    tmp_path: Path, postgresql_url: str, s3: S3Server, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, postgresql_url: str, s3: S3Server, place: BucketPlace
 ) -> None:
-    for name, value in s3.environment.items():
-        monkeypatch.setenv(name, value)
     settings = {
         "MCC_DATABASE_URL": postgresql_url,
         "MCC_WORKERS": "1",
-        "MCC_RECORDINGS_URL": f"s3://{BUCKET}/plant",
+        "MCC_RECORDINGS_URL": str(place),
         "MCC_POLL_PERIOD_S": "0.5",
     }
     engine = connect(postgresql_url)
@@ -100,5 +98,5 @@ def test_a_record_comes_by_the_bucket_to_the_other_host_and_to_the_page(
         assert {name: archive.read(name) for name in archive.namelist()} == relayed
         assert not (service.data / "recordings").exists()
         assert list((service.data / "arriving").glob("*/*")) == []
-    assert len(s3.keys_of()) == len(relayed)
+    assert len([key for key in s3.keys_of() if key.startswith(place.prefix)]) == len(relayed)
     engine.dispose()

@@ -123,3 +123,18 @@ def test_a_directory_that_cannot_be_made_is_named(config: Path, capsys: pytest.C
     assert "/proc/nodisk/backup: the directory of the back-up cannot be made: No such file" in told
     assert "look whether its disk is mounted" in told
     assert "Errno" not in told
+
+
+@pytest.mark.parametrize("command", [("backup", "{0}/copies"), ("restore", "{0}/copies/latest")])
+def test_back_ups_refuse_a_bucket_in_one_line(
+    command: tuple[str, ...], config: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run(capsys, "backup", "--config", config)
+    (made,) = [folder for folder in (tmp_path / "copies").iterdir() if (folder / "configuration").is_dir()]
+    (tmp_path / "copies" / "latest").symlink_to(made)
+    config.write_text('data_directory = "."\nscd = "plant.scd"\nrecordings_url = "s3://statorwatch"\n')
+    arguments = [one.format(tmp_path) for one in command]
+    assert main([*arguments, "--config", str(config)]) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("mcc: s3://statorwatch: expected the recordings in a folder, found them in an S3-")
+    assert "back up the database by its own tools first (pg_dump), and then the bucket" in line

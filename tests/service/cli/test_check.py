@@ -265,3 +265,36 @@ def test_what_is_left_out_of_a_relay_s_file_is_a_warning(
     assert "warning: R-1.icd: line " in told
     assert '<DO name="Ind1" type="gone">: left out: expected a DOType with id="gone"' in told
     assert "warning; mcc serve would start: 1 motor," in told
+
+
+@pytest.mark.usefixtures("new_clients")
+@pytest.mark.parametrize(
+    ("endpoint", "told"),
+    [
+        ("https://minio.example:9000", None),
+        ("http://127.0.0.1:9000", None),
+        ("http://minio.example:9000", "recordings go over the network in clear to http://minio.example:9000"),
+        (
+            "https://me:geheim@minio.example:9000",
+            "expected a URL such as https://minio.example:9000, without",
+        ),
+    ],
+)
+def test_the_way_to_an_s3_compatible_store_is_looked_at(
+    config: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    endpoint: str,
+    told: str | None,
+) -> None:
+    config.write_text(config.read_text() + 'recordings_url = "s3://statorwatch/plant-1"\n', encoding="utf-8")
+    monkeypatch.setenv("AWS_ACCESS_KEY_ID", "plant-1")
+    monkeypatch.setenv("AWS_SECRET_ACCESS_KEY", "geheim")
+    monkeypatch.setenv("AWS_ENDPOINT_URL_S3", endpoint)
+    assert main(["check", "--config", str(config)]) == 0
+    assert main(["check", "--config", str(config), "--json"]) == 0
+    said = capsys.readouterr()
+    warnings = [line for line in said.out.splitlines() if line.startswith("warning: ")]
+    assert len(warnings) == (0 if told is None else 1)
+    assert told is None or told in warnings[0]
+    assert "geheim" not in said.out + said.err

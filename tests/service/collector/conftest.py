@@ -16,6 +16,7 @@ from service.collector.session.session_policy import SESSION_POLICY, SessionPoli
 from service.configuration.settings import Settings
 from service.plant import Plant, PlantMotor, Relay, Site
 from service.recording_store.folder import FolderStore
+from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect
 from service.storage.records import RecordingEntry, RecordingRequest, Sample
 from service.storage.states import AlarmKind, LinkState, RecordingRequestState, RecordingState
@@ -37,7 +38,10 @@ MOTOR = "PUMP-A1"
 
 @dataclass
 class Bench:
-    """The service's side of one relay."""
+    """The service's side of one relay.
+
+    kept_in: where sessions keep recordings, in the place of `store`.
+    """
 
     relay: Relay
     repository: Repository
@@ -46,6 +50,7 @@ class Bench:
     relay_root: Path
     policy: SessionPolicy = SESSION_POLICY
     reported: Motor | None = None
+    kept_in: RecordingStore | None = None
 
     def start_relay(self) -> ScriptedRelay:
         return ScriptedRelay(self.relay_root, self.relay.port)
@@ -57,7 +62,7 @@ class Bench:
             self.relay,
             MOTOR,
             self.repository,
-            self.store,
+            self.kept_in or self.store,
             self.settings,
             on_sample=on_sample,
             reported=self.reported,

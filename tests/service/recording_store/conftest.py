@@ -1,52 +1,18 @@
 """Stores of both kinds: a folder, and a bucket of a server that is a process of its own."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from service.configuration.recordings_url import BucketPlace
-from service.recording_store import bucket, bucket_client
 from service.recording_store.bucket import BucketStore
-from service.recording_store.bucket_client import forget_clients
 from service.recording_store.folder import FolderStore
 from service.recording_store.store import RecordingStore
-from testing.service.s3_server import BUCKET, Fault, S3Server, serving_s3
+from testing.service.s3_server import S3Server
 
 StoreMaker = Callable[[str], RecordingStore]
 """Opens the same place for a writer of this name."""
-
-
-@pytest.fixture(scope="session")
-def s3_process(tmp_path_factory: pytest.TempPathFactory) -> Iterator[S3Server]:
-    with serving_s3(tmp_path_factory.mktemp("s3")) as server:
-        yield server
-
-
-@pytest.fixture
-def s3(s3_process: S3Server, monkeypatch: pytest.MonkeyPatch) -> Iterator[S3Server]:
-    """The server, in order, and this process told of it; limits of time that a test can wait for."""
-    for name, value in s3_process.environment.items():
-        monkeypatch.setenv(name, value)
-    monkeypatch.setattr(bucket, "LOOK_AGAIN_S", 0.0)
-    forget_clients()
-    s3_process.fail(Fault.NONE)
-    yield s3_process
-    s3_process.fail(Fault.NONE)
-    forget_clients()
-
-
-@pytest.fixture
-def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in ("ANSWER_S", "QUICK_ANSWER_S"):
-        monkeypatch.setattr(bucket_client, name, 2.0)
-    forget_clients()
-
-
-@pytest.fixture
-def place(request: pytest.FixtureRequest) -> BucketPlace:
-    """A place of the test's own."""
-    return BucketPlace.of(f"s3://{BUCKET}/{request.node.name.partition('[')[0]}-{id(request.node)}")
 
 
 @pytest.fixture
@@ -66,3 +32,18 @@ def opened_by(request: pytest.FixtureRequest, tmp_path: Path) -> StoreMaker:
 @pytest.fixture
 def store(opened_by: StoreMaker) -> RecordingStore:
     return opened_by("service")
+
+
+@pytest.fixture
+def known(store: RecordingStore, request: pytest.FixtureRequest, tmp_path: Path) -> Callable[[], set[str]]:
+    """The digests of the records at their places, as somebody finds them who looks there."""
+    if isinstance(store, FolderStore):
+        return lambda: {folder.name for folder in (tmp_path / "recordings").glob("??/*")}
+    server: S3Server = request.getfixturevalue("s3")
+    prefix = request.getfixturevalue("place").prefix
+
+    def in_the_bucket() -> set[str]:
+        parts = [key.removeprefix(prefix).split("/") for key in server.keys_of() if key.startswith(prefix)]
+        return {digest for folder, digest, _ in parts if len(folder) == len("ab")}
+
+    return in_the_bucket

@@ -3,6 +3,7 @@
 import os
 import pickle
 import time
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -13,8 +14,9 @@ from hypothesis import strategies as st
 from service.recording_store.contents import safe_name
 from service.recording_store.errors import RecordingStoreError
 from service.recording_store.store import RecordingStore
-from service.recording_store.unknown_folders import PREFIXES
 from tests.service.recording_store.conftest import StoreMaker
+
+Known = Callable[[], set[str]]
 
 FILES: dict[str, Path | bytes] = {"c_0001.cfg": b"config", "EVENTS/C_0001.DAT": b"samples"}
 
@@ -22,10 +24,6 @@ FILES: dict[str, Path | bytes] = {"c_0001.cfg": b"config", "EVENTS/C_0001.DAT": 
 def contents(store: RecordingStore, digest: str) -> dict[str, bytes]:
     with store.opened(digest) as entry:
         return {path.name: path.read_bytes() for path in entry.parent.iterdir()}
-
-
-def known(store: RecordingStore) -> set[str]:
-    return {folder.digest for prefix in PREFIXES for folder in store.unknown.stored(prefix)}
 
 
 def test_files_are_kept_under_their_content(store: RecordingStore) -> None:
@@ -38,12 +36,12 @@ def test_files_are_kept_under_their_content(store: RecordingStore) -> None:
     assert store.problem() is None
 
 
-def test_the_same_files_are_stored_once(store: RecordingStore, tmp_path: Path) -> None:
+def test_the_same_files_are_stored_once(store: RecordingStore, known: Known, tmp_path: Path) -> None:
     copy = tmp_path / "copy.dat"
     copy.write_bytes(b"samples")
     first = store.store(FILES)
     assert store.store({"C_0001.DAT": copy, "C_0001.CFG": b"config"}) == first
-    assert known(store) == {first.digest}
+    assert known() == {first.digest}
     assert store.store(FILES | {"EVENTS/C_0001.DAT": b"sample_"}).digest != first.digest
 
 
@@ -56,7 +54,8 @@ def test_many_at_once_store_one(store: RecordingStore) -> None:
 
 def test_whoever_reads_needs_its_name_alone(store: RecordingStore) -> None:
     """Tasks of other processes and hosts carry a source, and what was learnt is kept by it."""
-    source = store.source(store.store(FILES).digest)
+    digest = store.store(FILES).digest
+    source = store.source(digest)
     elsewhere = pickle.loads(pickle.dumps(source))  # noqa: S301 - our own
     assert elsewhere == source
     assert hash(elsewhere) == hash(source)
@@ -64,15 +63,10 @@ def test_whoever_reads_needs_its_name_alone(store: RecordingStore) -> None:
     with elsewhere.opened() as entry:
         assert (entry.name, entry.read_bytes()) == ("C_0001.CFG", b"config")
     again: RecordingStore = pickle.loads(pickle.dumps(store))  # noqa: S301 - our own
-    assert again.find(source_digest(store)).name == "C_0001"
+    assert again.find(digest).name == "C_0001"
 
 
-def source_digest(store: RecordingStore) -> str:
-    (digest,) = known(store)
-    return digest
-
-
-def test_what_is_not_kept_leaves_nothing(store: RecordingStore) -> None:
+def test_what_is_not_kept_leaves_nothing(store: RecordingStore, known: Known) -> None:
     def interrupted_pull() -> None:
         with store.incoming() as incoming, incoming.create("A.CFG") as sink:
             sink.write(b"half of ")
@@ -80,7 +74,7 @@ def test_what_is_not_kept_leaves_nothing(store: RecordingStore) -> None:
 
     with pytest.raises(ConnectionError):
         interrupted_pull()
-    assert known(store) == set()
+    assert known() == set()
     assert store.discard_incoming() == 0
 
 
@@ -96,7 +90,7 @@ def test_left_overs_of_a_killed_run_are_removed_and_nobody_elses(opened_by: Stor
         assert incoming.keep().name == "B"
 
 
-def test_what_is_set_aside_is_gone(store: RecordingStore) -> None:
+def test_what_is_set_aside_is_gone(store: RecordingStore, known: Known) -> None:
     stored, other = store.store(FILES), store.store({"OTHER.CFF": b"other"})
     for _ in range(2):
         store.set_aside(stored.digest)
@@ -105,11 +99,13 @@ def test_what_is_set_aside_is_gone(store: RecordingStore) -> None:
     assert not stored.is_there()
     with pytest.raises(RecordingStoreError, match="missing"):
         store.find(stored.digest)
-    assert known(store) == {other.digest}
+    assert known() == {other.digest}
     assert store.store(FILES).is_there()
 
 
-def test_what_the_database_does_not_know_is_moved_apart_and_put_back(store: RecordingStore) -> None:
+def test_what_the_database_does_not_know_is_moved_apart_and_put_back(
+    store: RecordingStore, known: Known
+) -> None:
     began_s = time.time()
     stored = store.store(FILES)
     (folder,) = store.unknown.stored(stored.digest[:2])
@@ -126,7 +122,7 @@ def test_what_the_database_does_not_know_is_moved_apart_and_put_back(store: Reco
     assert list(store.unknown.set_apart()) == []
     store.unknown.move_apart(stored.digest)
     store.unknown.remove(stored.digest)
-    assert (known(store), list(store.unknown.set_apart())) == (set(), [])
+    assert (known(), list(store.unknown.set_apart())) == (set(), [])
 
 
 @pytest.mark.parametrize(
