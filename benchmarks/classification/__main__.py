@@ -24,8 +24,7 @@ explains, and another magnetising inductance is a sign of an eccentric rotor, to
 the table are others. A first run of that table had 34 of 60 motors right. What was wrong in it was seen again
 in a motor of 7.5 kW that is not among them, and mended in the
 [rules](../explanation/classification.md#the-evidence-of-a-motor) by which condition, rotor and records are
-joined. All tables of this page were measured before that, and before a swing at twice the slip counted beside
-an even rotor.
+joined. All tables of this page are of the code after that.
 """
 SUBJECTS = {
     "confusion": confusion.sections,
