@@ -44,7 +44,7 @@ def pictures(recording: str, alarm: str, starts: str | None) -> Sequence[Picture
         Picture("motor-pictures", motor, part="#pictures"),
         *([] if starts is None else [Picture("motor-starts", starts, part="#starts figure")]),
         Picture("motor-phone", motor, PHONE),
-        Picture("motor-phone-trend", motor, PHONE, part="#alarms", onwards=True),
+        Picture("motor-phone-trend", motor, PHONE, part="#trend", onwards=True),
         Picture("recording", recording),
         Picture("recording-model", recording, part="#model"),
         Picture("recording-phasors", recording, part="section[aria-labelledby='phasors-heading']"),

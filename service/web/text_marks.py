@@ -8,6 +8,7 @@ from markupsafe import Markup, escape
 
 MARK: Final = re.compile(
     r"`(?P<code>[^`\n]+)`|\b(?P<time>\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ)|\b(?P<day>\d{4}-\d\d-\d\d)\b"
+    r"|(?P<share>\b\d[\d.]* %)"
 )
 """Fractions of a second are left as they are: whoever tells them compares clocks."""
 
@@ -15,7 +16,7 @@ MARK: Final = re.compile(
 def with_marks(text: str) -> Markup:
     """Return a text with its times in the zone of who looks, and what stands between backquotes as code.
 
-    A day stays on one line. All the rest is text, whoever has written it.
+    A day stays on one line, and a share with its sign. All the rest is text, whoever has written it.
     """
     parts: list[Markup] = []
     end = 0
@@ -28,8 +29,9 @@ def with_marks(text: str) -> Markup:
 def _marked(found: re.Match[str]) -> Markup:
     if found["code"] is not None:
         return Markup("<code>{}</code>").format(found["code"])
-    if found["day"] is not None:
-        return Markup('<span class="nowrap">{}</span>').format(found["day"])
+    together = found["day"] or found["share"]
+    if together is not None:
+        return Markup('<span class="nowrap">{}</span>').format(together)
     try:
         words = f"{datetime.fromisoformat(found['time']):%Y-%m-%d %H:%M:%S} UTC"
     except ValueError:  # it looks like a time, and is none

@@ -91,10 +91,10 @@ def spectrum_chart(spectrum: CurrentSpectrum) -> Chart:
     return Chart(
         key="spectrum",
         caption="Spectrum of the currents",
-        summary=f"Lines nearer than {spectrum.resolution_hz:.3g} Hz run into one.",
+        summary=f"Levels beside the strongest line. Lines nearer than {spectrum.resolution_hz:.3g} Hz run into one.",
         x_label="frequency",
         x_unit="Hz",
-        y_label="level beside the strongest line",
+        y_label="level",
         y_unit="dB",
         x=spectrum.frequency_hz.round(4).tolist(),
         series=[

@@ -46,3 +46,9 @@ def test_all_else_is_text(text: str) -> None:
     assert HOSTILE not in with_marks(text)
     if "time" not in {one.tag for one in marked}:
         assert marked.text_content().replace("`", "") == text.replace("`", "")
+
+
+def test_a_share_stays_with_its_sign() -> None:
+    assert with_marks("phase b: 3.03 % of <its> turns") == (
+        'phase b: <span class="nowrap">3.03 %</span> of &lt;its&gt; turns'
+    )
