@@ -190,7 +190,7 @@ def serving_site(directory: Path, lease_s: float) -> Iterator[Site]:
         url = server.url(DATABASE)
         settings = {"MCC_DATABASE_URL": url, "MCC_LEASE_S": f"{lease_s:g}", "MCC_WORKERS": "1"}
         with running_service(directory, plant.scd, **settings) as service:
-            engine = connect(url)
+            engine = connect(url, limits=None)
             try:
                 yield Site(plant, service, engine, Repository(engine), proxy, lease_s)
             finally:

@@ -91,7 +91,7 @@ def spectrum_chart(spectrum: CurrentSpectrum) -> Chart:
     return Chart(
         key="spectrum",
         caption="Spectrum of the currents",
-        summary=f"Levels beside the strongest line. Lines nearer than {spectrum.resolution_hz:.3g} Hz run into one.",
+        summary=f"Beside the strongest line. Lines nearer than {spectrum.resolution_hz:.3g} Hz run into one.",
         x_label="frequency",
         x_unit="Hz",
         y_label="level",
