@@ -1,6 +1,7 @@
 """What a recorded start shows, as figures and as a curve."""
 
 from dataclasses import dataclass
+from math import sqrt
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,3 +70,10 @@ class MotorStart:
     rated_current_A: float
     rated_voltage_V: float
     curve: StartCurve
+
+    @property
+    def mean_current_A(self) -> float | None:
+        """Root of the mean squared line current over the acceleration time [A]; None without that time."""
+        if self.acceleration_s is None or not self.i2t_over_s > 0.0:
+            return None
+        return sqrt(self.i2t_A2s / self.i2t_over_s)

@@ -44,6 +44,7 @@ class StartSummary(Document):
 
     source: what tells of it. recording_id: null for a start that the relay's report alone tells. from_report:
     figures that the recording does not show, and the relay's report of the same start tells.
+    mean_current_A: root of the mean square over the acceleration time.
     share_of_hot_limit: I2t over what the rotor withstands from running temperature. starts_within_hour: in
     the hour that ends with this start; starts_allowed: what the motor file allows.
     comparison: null for the starts of the reference, and for reported ones beside a recorded reference.
@@ -57,6 +58,7 @@ class StartSummary(Document):
     is_reference: bool
     acceleration_s: float | None
     peak_current_A: float
+    mean_current_A: float | None
     crest_current_A: float
     running_current_A: float | None
     lowest_voltage_V: float | None

@@ -9,7 +9,7 @@ from service.client.verdicts import percent, to_the_second
 
 FIELDS = (
     "time", "source", "id", "recording_id", "is_from_rest", "is_reference", "acceleration_s",
-    "peak_current_A", "running_current_A", "lowest_voltage_V", "i2t_A2s", "from_report",
+    "peak_current_A", "mean_current_A", "running_current_A", "lowest_voltage_V", "i2t_A2s", "from_report",
     "share_of_hot_limit", "starts_within_hour", "starts_allowed", "load_torque_Nm", "load_torque_Nm_ci95",
     "rotor_state", "comparison",
 )  # fmt: skip
@@ -25,6 +25,7 @@ def show_starts(url: str, motor: str, *, limit: int, as_csv: bool, as_json: bool
         "time": lambda one: to_the_second(one["time"]),
         "run-up s": lambda one: _figure(one["acceleration_s"]),
         "peak A": lambda one: _figure(one["peak_current_A"]),
+        "mean A": lambda one: _figure(one["mean_current_A"]),
         "lowest V": lambda one: _figure(one["lowest_voltage_V"]),
         "load N m": lambda one: _figure(one["load_torque_Nm"]),
         "heat %": lambda one: percent(one["share_of_hot_limit"]),

@@ -74,6 +74,20 @@ def test_peak_and_crest_are_those_of_the_samples() -> None:
     assert start.peak_current_A > 3.0 * start.running_current_A
 
 
+def test_the_mean_current_is_that_of_the_samples_of_the_run_up() -> None:
+    record = StartRecord(snr_db=60.0).of(REFERENCE)
+    start = measure_start(record, REFERENCE)
+
+    assert start.acceleration_s is not None
+    assert start.mean_current_A is not None
+    assert start.running_current_A is not None
+    assert start.running_current_A < start.mean_current_A < start.peak_current_A
+    rows = record.samples[:3]
+    beginning = int(np.flatnonzero(np.abs(rows).max(axis=0) > 0.1 * np.abs(rows).max())[0])
+    during = rows[:, beginning : beginning + round(start.acceleration_s * record.sample_rate_hz)]
+    assert start.mean_current_A == pytest.approx(float(np.sqrt(np.mean(during**2))), rel=0.02)
+
+
 @pytest.mark.parametrize("lines", [False, True], ids=["phase voltages", "two line voltages"])
 def test_the_lowest_voltage_is_that_of_the_start_not_of_the_time_before(lines: bool) -> None:
     record = StartRecord(lines=lines).of(MEDIUM)
@@ -91,6 +105,7 @@ def test_a_record_that_ends_within_the_start_tells_no_acceleration_time() -> Non
 
     assert start.is_from_rest
     assert start.acceleration_s is None
+    assert start.mean_current_A is None
     assert start.running_current_A is None
     assert start.i2t_over_s == pytest.approx(0.1, abs=0.01)
 

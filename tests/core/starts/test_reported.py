@@ -30,6 +30,7 @@ def test_a_report_has_the_figures_of_a_start() -> None:
     assert found.figures.acceleration_s == 1.5
     assert found.figures.i2t_A2s == pytest.approx(15 * 0.1 * 90.0**2)
     assert found.figures.running_current_A == pytest.approx(10.0)
+    assert found.figures.mean_current_A == pytest.approx(90.0)
     assert found.figures.peak_current_A == 95.0
     assert found.stress is not None
     assert found.torque is None

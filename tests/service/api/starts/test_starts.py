@@ -37,6 +37,7 @@ def test_starts_are_told_beside_the_first_ones(client: httpx.Client, recorded: R
     assert low < -0.12 < high
     assert (latest["starts_within_hour"], latest["starts_allowed"]) == (6, 2)
     assert latest["share_of_hot_limit"] == 0.03
+    assert first[0]["mean_current_A"] == pytest.approx((333.5 / 1.25) ** 0.5)
 
 
 def test_one_start_has_curves_and_what_the_model_tells(

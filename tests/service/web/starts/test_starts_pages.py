@@ -44,6 +44,7 @@ def test_starts_are_shown_beside_the_first_whole_one(client: httpx.Client, recor
     assert "+20 % time, +20 % I²t" in rows[1]
     assert "1.5 s" in rows[1]
     assert "94.6 A 11 ×" in rows[2]
+    assert "16.3 A" in rows[2]
     assert "372 V 93 %" in rows[2]
     assert "334 A²s" in rows[2]
     assert "began before the record" in rows[3]
