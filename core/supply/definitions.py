@@ -32,6 +32,28 @@ def nema_unbalance(line_voltages: Sequence[float]) -> float:
     return max(abs(one - mean) for one in line_voltages) / mean
 
 
+def unbalance_of_magnitudes(magnitudes: Sequence[float]) -> float:
+    """Return negative over positive sequence of three phasors that add up to zero (IEC 61000-4-30, 5.7).
+
+    Line voltages do, and the line currents of a motor, which has no neutral: so three magnitudes tell their
+    triangle. Errors of measuring make even ones a little uneven, never more even.
+
+    Parameters
+    ----------
+    magnitudes : sequence of float
+        Rms values, in any one unit, not all zero.
+
+    Returns
+    -------
+    float
+        Unbalance, 0 to 1; 1 also where no triangle has such sides.
+    """
+    squares = [one**2 for one in magnitudes]
+    beta = sum(one**2 for one in squares) / sum(squares) ** 2
+    root = sqrt(max(0.0, 3.0 - 6.0 * beta))
+    return sqrt(max(0.0, 1.0 - root) / (1.0 + root))
+
+
 def derating(unbalance: float) -> float | None:
     """Return what unbalance leaves of the rated power (NEMA MG-1, figure 14-1).
 

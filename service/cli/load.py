@@ -22,8 +22,8 @@ def show_load(url: str, motor: str, *, days: int, as_json: bool) -> None:
         return
     console = results()
     console.print(facts_table(_facts(load), title=f"{motor}: load of {days} days"))
-    console.print(_classes(load))
-    console.print(_limits(load))
+    for table in _tables(load):
+        console.print(table)
 
 
 def _facts(load: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
@@ -70,6 +70,13 @@ def _relay(told: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         yield "  remark", remark
 
 
+def _tables(load: Mapping[str, Any]) -> Iterator[FittedTable]:
+    yield _classes(load)
+    yield _limits(load)
+    if any(one["records"] for one in load["record_limits"]):
+        yield _record_limits(load)
+
+
 def _classes(load: Mapping[str, Any]) -> FittedTable:
     table = FittedTable(box=SIMPLE_HEAD, collapse_padding=True)
     table.add_column("load", no_wrap=True)
@@ -92,6 +99,22 @@ def _limits(load: Mapping[str, Any]) -> FittedTable:
             one["name"],
             *(plain(one[name]) for name in ("hours", "known_hours", "longest_hours")),
             _percent(one["worst"]),
+        )
+    return table
+
+
+def _record_limits(load: Mapping[str, Any]) -> FittedTable:
+    table = FittedTable(box=SIMPLE_HEAD, collapse_padding=True)
+    table.add_column("records beyond a limit")
+    for heading in ("records", "of", "share", "worst"):
+        table.add_column(heading, justify="right")
+    for one in load["record_limits"]:
+        table.add_row(
+            one["name"],
+            str(one["beyond"]),
+            str(one["records"]),
+            _percent(one["share"]),
+            NOT_TOLD if one["worst"] is None else f"{one['worst']:.4f}",
         )
     return table
 

@@ -9,7 +9,7 @@ from core.load.limits import DatedValue, HoursBeyond, hours_beyond
 from core.load.metered import Metered, load_point
 from core.load.profile import LoadProfile, load_profile
 from core.machines.parameters import Motor, ThermalElement
-from core.supply.definitions import nema_unbalance
+from core.supply.definitions import nema_unbalance, unbalance_of_magnitudes
 from core.thermal.bounded_rises import BoundedRises, bounded_capacity, bounded_rises
 from core.thermal.course import CurrentStep
 from core.thermal.full_load import full_load_current_A
@@ -17,6 +17,7 @@ from core.thermal.relay_model import settings_of
 from core.thermal.two_bodies import TwoBodies
 from core.thermal.winding_temperature import WindingTemperature, winding_temperature
 from core.units import NANOSECONDS_PER_DAY, NANOSECONDS_PER_SECOND
+from service.condition.record_limits import RecordLimit, record_limits
 from service.condition.relay_statistics import ComparedStatistics, compared_statistics
 from service.plant import AveragingStep
 from service.storage import Repository
@@ -24,7 +25,7 @@ from service.storage import Repository
 MINUTES_UP_TO_DAYS: Final = 2
 """A longer time is told by means of quarters of an hour, a shorter one by those of minutes."""
 LIVE: Final = 0.1
-"""Share of the rated voltage below which a supply is switched off, and not low."""
+"""Share of the rated voltage, or frequency, below which a supply is switched off, and not low."""
 MOST_RECORDS: Final = 240
 REMEMBERED_NS: Final = NANOSECONDS_PER_DAY // 2
 """A motor forgets its heat within hours."""
@@ -69,7 +70,8 @@ class MotorLoad:
     step: of the means that it is told by.  rises: of winding and frame at the end; None where nothing was
     metered.  winding: None without two records of the same sensors.  capacity_used: of the relay's thermal
     element, between bounds; None where the motors file does not tell its settings, or nothing was metered.
-    relay: the relay's own statistics; None where none were brought.
+    relay: the relay's own statistics; None where none were brought.  of_records: how many records of that
+    time lie beyond the limits of what no relay meters.
     """
 
     profile: LoadProfile
@@ -79,6 +81,7 @@ class MotorLoad:
     winding: WindingRise | None
     capacity_used: tuple[float, float] | None = None
     relay: ComparedStatistics | None = None
+    of_records: Sequence[RecordLimit] = ()
 
 
 def motor_load(
@@ -103,6 +106,7 @@ def motor_load(
         winding=_winding(repository, motor),
         capacity_used=None if thermal is None else _capacity_used(repository, motor, thermal, now_ns),
         relay=compared_statistics(repository, motor),
+        of_records=record_limits(repository, motor.name, from_ns=from_ns, to_ns=now_ns),
     )
 
 
@@ -123,6 +127,20 @@ def _unbalance(known: Known, motor: Motor) -> float | None:
     return None if lines_V is None or _voltage(known, motor) is None else nema_unbalance(lines_V)
 
 
+def _frequency(known: Known, motor: Motor) -> float | None:
+    """Return the frequency where there is a supply: relays tell the last or the rated one without any."""
+    metered = known[0]
+    if metered.frequency_hz is None or _voltage(known, motor) is None:
+        return None
+    share = metered.frequency_hz / motor.nameplate.rated_frequency_Hz
+    return share if share > LIVE else None
+
+
+def _current_unbalance(known: Known, _motor: Motor) -> float | None:
+    amps = known[0].currents_A
+    return unbalance_of_magnitudes(amps) if amps is not None and known[1].runs else None
+
+
 LIMITS: Final = (
     Limit("load above rated", 1.0, below=False, value_of=_load),
     Limit("load above 1.15 of rated", 1.15, below=False, value_of=_load),
@@ -130,8 +148,17 @@ LIMITS: Final = (
     Limit("voltage above 110 %", 1.1, below=False, value_of=_voltage),
     Limit("unbalance above 1 %", 0.01, below=False, value_of=_unbalance),
     Limit("unbalance above 5 %", 0.05, below=False, value_of=_unbalance),
+    Limit("current unbalance above 10 %", 0.1, below=False, value_of=_current_unbalance),
+    Limit("frequency below 98 %", 0.98, below=True, value_of=_frequency),
+    Limit("frequency above 102 %", 1.02, below=False, value_of=_frequency),
+    Limit("frequency below 95 %", 0.95, below=True, value_of=_frequency),
+    Limit("frequency above 103 %", 1.03, below=False, value_of=_frequency),
 )
-"""NEMA MG-1: 12.44 for the voltage, 14.36 for its unbalance; 1.15 is the usual service factor."""
+"""NEMA MG-1: 12.44 for the voltage, 14.36 for its unbalance; 1.15 is the usual service factor.
+
+NEMA MG-1, 14.36, says that currents are 6 to 10 times as uneven as voltages: of 10 %, a supply within 1 % is
+not the whole cause. The frequency's limits are those of zones A and B of IEC 60034-1, 7.3.
+"""
 
 
 def _beyond(limit: Limit, known: Sequence[Known], motor: Motor, longest_ns: int, until_ns: int) -> LimitHours:

@@ -12,15 +12,18 @@ from testing.service.plants import motor
 QUARTER_NS = 900 * NANOSECONDS_PER_SECOND
 QUARTERS = 96
 STANDING, SILENT = range(24, 48), range(48, 60)
-LOW, UNEVEN = range(4), range(92, 96)
+LOW, UNEVEN, SLOW = range(4), range(92, 96), range(88, 92)
 MINUTE_NS = 60 * NANOSECONDS_PER_SECOND
 LATE_NS = 150 * NANOSECONDS_PER_SECOND
 """Means are made two minutes after their time."""
 POWER_W = 640.0
 
 
-def meter_a_day(repository: Repository, name: str = "PUMP-A1") -> None:
-    """Add what was metered each minute of a day, and of the quarter of an hour that is not over."""
+def meter_a_day(repository: Repository, name: str = "PUMP-A1", *, disturbed: bool = False) -> None:
+    """Add what was metered each minute of a day, and of the quarter of an hour that is not over.
+
+    disturbed: with an hour of low frequency, and one of uneven currents.
+    """
     known = motor(name)
     repository.note_motors({name: document_of(known)}, now_ns=1)
     rated_V = known.nameplate.rated_voltage_V
@@ -35,9 +38,13 @@ def meter_a_day(repository: Repository, name: str = "PUMP-A1") -> None:
             continue
         stands = quarter in STANDING
         values = dict.fromkeys(("ia_A", "ib_A", "ic_A"), 0.0 if stands else running_A)
+        values["ia_A"] *= 1.3 if disturbed and quarter in UNEVEN else 1.0
         volts = 0.88 * rated_V if quarter in LOW else rated_V
         values |= {"vab_V": volts, "vbc_V": volts, "vca_V": 0.97 * volts if quarter in UNEVEN else volts}
-        values |= {"power_W": 0.0 if stands else POWER_W, "frequency_Hz": 50.0}
+        values |= {
+            "power_W": 0.0 if stands else POWER_W,
+            "frequency_Hz": 48.0 if disturbed and quarter in SLOW else 50.0,
+        }
         samples.append(Sample(name, at_ns, values))
     repository.add_samples(samples)
     repository.average_measurements(now_ns=now_ns)

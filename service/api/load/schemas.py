@@ -34,6 +34,17 @@ class LimitHours(Document):
     worst: float | None
 
 
+class RecordLimit(Document):
+    """How many records of that time lay beyond a limit. records: that tell the quantity. worst: largest."""
+
+    name: str
+    limit: float
+    records: int
+    beyond: int
+    share: float | None
+    worst: float | None
+
+
 class ThermalState(Document):
     """Rises above the ambient temperature, between bounds, of a usual motor with such currents.
 
@@ -82,7 +93,7 @@ class LoadProfile(Document):
 
     step_s: of the means that it is told by. running_hours, standing_hours and unknown_hours make up the whole
     time. unclassed_hours: running, at a load that is not known. duty: running over known hours. starts: at
-    least so many.
+    least so many. record_limits: of what no relay meters; shares of records, not of hours.
     """
 
     from_time: Time | None = None
@@ -98,6 +109,7 @@ class LoadProfile(Document):
     mean_load: float | None = None
     starts: int | None = None
     limits: Listed[LimitHours] = Field(default_factory=list)
+    record_limits: Listed[RecordLimit] = Field(default_factory=list)
     thermal: ThermalState | None = None
     relay_statistics: RelayStatistics | None = None
 
@@ -122,6 +134,17 @@ def load_document(load: MotorLoad) -> LoadProfile:
                     "worst": one.found.worst,
                 }
                 for one in load.limits
+            ],
+            "record_limits": [
+                {
+                    "name": one.name,
+                    "limit": one.limit,
+                    "records": one.records,
+                    "beyond": one.beyond,
+                    "share": one.share,
+                    "worst": one.worst,
+                }
+                for one in load.of_records
             ],
             "thermal": _thermal(load),
             "relay_statistics": _relay(load),

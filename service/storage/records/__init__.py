@@ -82,7 +82,7 @@ from service.storage.records.relays import (
     Quarantine,
     RelayFindings,
 )
-from service.storage.records.rotor_and_supply import RotorEntry, SupplyEntry
+from service.storage.records.rotor_and_supply import RecordsBeyond, RotorEntry, SupplyEntry, SupplyQuantity
 from service.storage.records.starts import ImportedStart, ReportedStart, ReportOutcome, StartEntry
 
 __all__ = [
@@ -159,6 +159,7 @@ __all__ = [
     "RecordingEntry",
     "RecordingFile",
     "RecordingRequest",
+    "RecordsBeyond",
     "RelayEvent",
     "RelayFindings",
     "RemoteRecord",
@@ -174,6 +175,7 @@ __all__ = [
     "StandingRotor",
     "StartEntry",
     "SupplyEntry",
+    "SupplyQuantity",
     "ToObserve",
     "TrackedPoint",
     "TrendPoint",

@@ -1,6 +1,7 @@
 """What recordings show beside their diagnosis, as the repository hands it out."""
 
 from dataclasses import dataclass
+from enum import StrEnum
 
 from core.rotor.finding import RotorFinding
 from core.supply.figures import SupplyFigures
@@ -24,3 +25,19 @@ class SupplyEntry:
     motor: str
     time_ns: int
     figures: SupplyFigures
+
+
+class SupplyQuantity(StrEnum):
+    """A figure of the supply that records are counted by. The words are the names of its columns."""
+
+    THD_VOLTAGE = "thd_voltage"
+    HARMONIC_VOLTAGE_FACTOR = "harmonic_voltage_factor"
+
+
+@dataclass(frozen=True, slots=True)
+class RecordsBeyond:
+    """Records that tell a figure, and those above a limit. worst: the largest value; None without records."""
+
+    records: int
+    beyond: int
+    worst: float | None

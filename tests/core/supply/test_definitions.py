@@ -1,19 +1,40 @@
 """Unbalance and distortion by the standards' own printed numbers and by arithmetic done otherwise."""
 
-from math import sqrt
+from cmath import rect
+from math import pi, sqrt
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from core.supply.definitions import (
     derating,
     harmonic_voltage_factor,
     nema_unbalance,
     total_harmonic_distortion,
+    unbalance_of_magnitudes,
 )
 
 
 def test_unbalance_of_the_example_printed_in_nema_mg_1() -> None:
     assert nema_unbalance([460.0, 467.0, 450.0]) == pytest.approx(0.0196, abs=5e-5)
+
+
+@given(
+    share=st.floats(0.0, 0.99),
+    angle=st.floats(0.0, 2.0 * pi),
+    size=st.floats(0.01, 1e4),
+)
+def test_unbalance_of_magnitudes_is_that_of_the_sequences(share: float, angle: float, size: float) -> None:
+    turn = rect(1.0, 2.0 * pi / 3.0)
+    negative = rect(share, angle)
+    magnitudes = [size * abs(turn**-n + negative * turn**n) for n in range(3)]
+    assert unbalance_of_magnitudes(magnitudes) == pytest.approx(share, abs=1e-6)
+
+
+def test_unbalance_of_a_motor_that_lost_a_phase_or_has_no_triangle_is_one() -> None:
+    assert unbalance_of_magnitudes([10.0, 10.0, 0.0]) == pytest.approx(1.0)
+    assert unbalance_of_magnitudes([10.0, 4.0, 4.0]) == 1.0
 
 
 @pytest.mark.parametrize(

@@ -1,14 +1,15 @@
 """What recordings show of the supply: kept with their diagnosis, and listed."""
 
+from collections.abc import Sequence
 from dataclasses import fields
 from typing import Any, Final
 
-from sqlalchemy import Select, delete, select
+from sqlalchemy import Select, case, delete, func, select
 from sqlalchemy.orm import Session
 
 from core.supply.figures import SupplyFigures
 from service.storage.models import MotorRow, SupplyFiguresRow
-from service.storage.records import Cursor, Page, SupplyEntry
+from service.storage.records import Cursor, Page, RecordsBeyond, SupplyEntry, SupplyQuantity
 from service.storage.repository.sessions import Order, Sessions, columns_of, found, latest_of, page_of, within
 from service.storage.texts import storable
 
@@ -40,6 +41,31 @@ class SupplyRows(Sessions):
         """Return what a motor's latest recordings show of its supply, oldest first."""
         with self._read() as session:
             return latest_of(session, _of_motor(motor), _ORDER, _entry, limit=limit)
+
+    def supply_beyond(
+        self,
+        motor: str,
+        quantities: Sequence[tuple[SupplyQuantity, float]],
+        *,
+        from_ns: int,
+        to_ns: int,
+    ) -> tuple[RecordsBeyond, ...]:
+        """Return how many of a motor's records have each quantity above its limit, from_ns <= time < to_ns.
+
+        Raises NotFoundError.
+        """
+        told: list[Any] = [func.count()]
+        for quantity, limit in quantities:
+            column = getattr(SupplyFiguresRow, quantity.value)
+            told += [func.sum(case((column > limit, 1), else_=0)), func.max(column)]
+        query = select(*told).where(
+            SupplyFiguresRow.motor == motor, *within(SupplyFiguresRow.time_ns, from_ns, to_ns)
+        )
+        with self._read() as session:
+            found(session, MotorRow, motor, "motor")
+            records, *figures = session.execute(query).one()
+        pairs = zip(figures[::2], figures[1::2], strict=True)
+        return tuple(RecordsBeyond(records, int(beyond or 0), worst) for beyond, worst in pairs)
 
 
 def keep_supply(

@@ -7,11 +7,15 @@ import httpx
 import pytest
 
 from core.machines.parameters import Connection, ThermalElement
+from core.supply.definitions import unbalance_of_magnitudes
+from core.units import NANOSECONDS_PER_SECOND
 from service.api.load.schemas import load_document
 from service.condition.metered_load import motor_load
+from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from testing.machines.motors import REFERENCE
 from testing.service.metered_days import POWER_W, meter_a_day
+from testing.service.rotor_and_supply import SUPPLY, ExaminedRecordings
 
 URL = "/api/v1/motors/PUMP-A1/load-profile"
 
@@ -50,6 +54,37 @@ def test_hours_beyond_limits(client: httpx.Client, repository: Repository) -> No
     assert uneven["worst"] == pytest.approx(0.02 / 0.99)
     assert limits["unbalance above 5 %"]["hours"] == 0.0
     assert limits["load above rated"]["known_hours"] == 15.0
+
+
+def test_hours_of_slow_supply_and_uneven_currents(client: httpx.Client, repository: Repository) -> None:
+    meter_a_day(repository, disturbed=True)
+
+    limits = {one["name"]: one for one in client.get(URL).json()["limits"]}
+
+    slow = limits["frequency below 98 %"]
+    assert (slow["hours"], slow["known_hours"], slow["worst"]) == (1.0, 21.0, pytest.approx(0.96))
+    assert limits["frequency below 95 %"]["hours"] == limits["frequency above 102 %"]["hours"] == 0.0
+    currents = limits["current unbalance above 10 %"]
+    assert (currents["hours"], currents["known_hours"]) == (1.0, 15.0)
+    assert currents["worst"] == pytest.approx(unbalance_of_magnitudes([1.3, 1.0, 1.0]), rel=1e-6)
+
+
+def test_records_beyond_limits_are_counted_as_records(
+    client: httpx.Client, repository: Repository, store: RecordingStore
+) -> None:
+    meter_a_day(repository)
+    now_ns = time.time_ns()
+    recorded = ExaminedRecordings(repository, store)
+    for back, factor in ((3600, 0.0085), (7200, 0.025), (40 * 86_400, 0.5)):
+        figures = replace(SUPPLY, harmonic_voltage_factor=factor)
+        recorded.add(None, figures, at_ns=now_ns - back * NANOSECONDS_PER_SECOND)
+
+    distortion, low, high = client.get(URL).json()["record_limits"]
+
+    assert (low["name"], low["beyond"], low["records"], low["share"]) == ("HVF above 0.02", 1, 2, 0.5)
+    assert (low["worst"], high["beyond"]) == (0.025, 0)
+    assert (distortion["beyond"], distortion["worst"]) == (0, 0.021)
+    assert client.get(URL, params={"days": 90}).json()["record_limits"][2]["beyond"] == 1
 
 
 def test_heat_lies_between_bounds_that_known_hours_close(

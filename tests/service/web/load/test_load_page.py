@@ -1,11 +1,16 @@
 """The page of a motor's load."""
 
+import time
+from dataclasses import replace
+
 import httpx
 
 from core.relay_reports import read_motor_statistics
+from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from service.storage.records import Actor
 from testing.service.metered_days import meter_a_day
+from testing.service.rotor_and_supply import SUPPLY, ExaminedRecordings
 from tests.core.relay_reports.examples import MOT
 from tests.service.web.pages import addresses, page, words
 
@@ -25,6 +30,21 @@ def test_the_page_shows_profile_limits_and_heat(client: httpx.Client, repository
     assert "no two records" in words(document, "#heat-title ~ dl dd")[-1]
     assert addresses(document, "main p a")[1:] == [f"{HERE}?days={days}" for days in (1, 7, 90)]
     assert words(document, "figure svg title")
+
+
+def test_records_beyond_limits_are_said_to_be_records(
+    client: httpx.Client, repository: Repository, store: RecordingStore
+) -> None:
+    meter_a_day(repository)
+    assert not page(client.get(HERE)).cssselect("#record-limits-title")
+    ExaminedRecordings(repository, store).add(
+        None, replace(SUPPLY, harmonic_voltage_factor=0.025), at_ns=time.time_ns() - 1_000_000_000
+    )
+
+    document = page(client.get(HERE))
+
+    rows = words(document, "#record-limits-title ~ div tbody tr")
+    assert "HVF above 0.0211100 %0.0250" in rows
 
 
 def test_the_relay_s_statistics_stand_beside_the_service_s_counts(
