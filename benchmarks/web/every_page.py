@@ -38,6 +38,7 @@ def _faults(browser: Browser, site: Site, path: str, screen: tuple[int, int]) ->
         for require in (
             watched.require_no_sideways_scroll,
             watched.require_accessible,
+            watched.require_series_told_apart_without_colours,
             watched.require_quiet,
         ):
             try:

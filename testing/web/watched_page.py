@@ -75,6 +75,11 @@ class WatchedPage:
         ]
         assert not serious, "\n".join([self.path, *serious])
 
+    def require_series_told_apart_without_colours(self) -> None:
+        """Fail where two series of a chart have the same line or the same shape."""
+        alike = self.page.evaluate(ALIKE_SERIES)
+        assert not alike, f"{self.path}: {alike}"
+
     def require_no_sideways_scroll(self) -> None:
         """Fail where the page is wider than the window."""
         wide = self.page.evaluate(WIDE_ELEMENTS)
@@ -104,6 +109,16 @@ class WatchedPage:
         self.problems.append("a dialog opened")
         dialog.dismiss()  # type: ignore[attr-defined]  # Playwright gives the event's argument no type
 
+
+ALIKE_SERIES = """() => [...document.querySelectorAll("figure[data-chart]")].flatMap((figure) => {
+    const data = document.getElementById(figure.dataset.chart);
+    if (data === null || JSON.parse(data.textContent).rows) return [];  // states have a row each
+    const legend = figure.querySelectorAll("[data-chart-legend] button svg");
+    const samples = [...legend].map((one) => one.outerHTML);
+    const differ = new Set(samples).size === samples.length;
+    return differ ? [] : [`${figure.dataset.chartName}: ${samples.join(" ")}`];
+})"""
+"""Charts in which two series look alike but for their colours, with the samples of their legends."""
 
 WIDE_ELEMENTS = """() => {
     const wide = document.documentElement.scrollWidth - document.documentElement.clientWidth;

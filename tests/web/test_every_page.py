@@ -35,6 +35,7 @@ def test_a_page_is_accessible_in_every_light_and_size(looked_at: Site, route: st
     assert page.page.title().endswith("StatorWatch")
     assert page.page.locator("h1").count() == 1
     page.require_accessible()
+    page.require_series_told_apart_without_colours()
     page.page.emulate_media(color_scheme="dark")
     page.require_accessible()
     for width, height in (ENLARGED, PHONE):

@@ -5,10 +5,12 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from playwright.sync_api import Browser
 
 from core.condition.events import Event, EventKind
+from core.recordings import Channel, Digitals, Quantity, Recording
 from service.configuration.settings import sqlite_url
 from service.plant import Plant
 from service.recording_store.folder import FolderStore
@@ -20,6 +22,7 @@ from testing.service.database import make_database
 from testing.service.diagnosed import add_diagnosed
 from testing.service.job_runner import register_runner
 from testing.service.plants import fault, two_motor_plant
+from testing.service.real_recordings import add_recording, running_record
 from testing.web.pages import address_of, is_page, page_routes
 from testing.web.site import Site, running_site
 
@@ -41,6 +44,24 @@ def hostile_plant() -> Plant:
             replace(pump, motor=replace(pump.motor, name=name), description=name, site=name, relay=name)
             for name in HOSTILE
         ),
+    )
+
+
+def hostile_waveform() -> Recording:
+    """A recording whose channels, states, units and station have such names."""
+    record = running_record()
+    assert record.digitals is not None
+    names = (SCRIPT, IMAGE, TEMPLATE, SCRIPT * 2, IMAGE * 2, TEMPLATE * 2)
+    channels = tuple(replace(one, name=name) for one, name in zip(record.channels, names, strict=True))
+    spare = Channel(IMAGE * 3, Quantity.OTHER, None, SCRIPT[:20], 10.0)
+    moving = np.zeros((len(record.samples[0]), 2), dtype=bool)
+    moving[100:200, 0] = moving[300:, 1] = True
+    return replace(
+        record,
+        channels=(*channels, spare),
+        samples=np.vstack([record.samples, record.samples[:1]]),
+        digitals=Digitals.of((SCRIPT, IMAGE), moving),
+        station=TEMPLATE,
     )
 
 
@@ -76,6 +97,7 @@ def hostile(tmp_path_factory: pytest.TempPathFactory, browser: Browser) -> Itera
         "eve", IMAGE, "0" * 64, scope=None, expires_ns=None, by=Actor("eve", ""), now_ns=now_ns
     )
     repository.settle_alarms(now_ns=now_ns)
+    add_recording(repository, store, hostile_waveform(), diagnosed=False, name=IMAGE)
     engine.dispose()
     with running_site(data, browser) as site:
         yield site
@@ -106,3 +128,21 @@ def test_no_text_is_markup_on_any_page(hostile: Site, route: str) -> None:
         assert not page.page.evaluate(HARMED), f"{path}{query} made markup of a text"
         assert page.page.locator("main img[src=x]").count() == 0
         assert "7*7" in page.page.content() or "49" not in page.page.locator("h1").inner_text()
+
+
+def test_names_of_channels_and_states_are_text_where_scripts_write_them(hostile: Site) -> None:
+    """Legends, values at the cursor, rows of states and the table of markers."""
+    (recording,) = [one for one in hostile.repository.recordings(limit=50).items if one.name == "EVENT"]
+    page = hostile.open(user="eve")
+    page.goto(f"/recordings/{recording.id}")
+    page.page.wait_for_function("() => document.documentElement.dataset.ready === 'true'")
+    legend = page.page.locator("[data-chart-legend] button")
+    assert any(SCRIPT in one for one in legend.all_inner_texts())
+    for place in page.page.locator("[data-chart-place]").all():
+        place.focus()
+        for key in ("ArrowRight", "+", "+", "+", "1", "ArrowRight", "2"):
+            place.press(key)
+    readouts = page.page.locator("[data-chart-readout]").all_inner_texts()
+    assert any(SCRIPT in one or IMAGE in one for one in readouts)
+    assert not page.page.evaluate(HARMED)
+    assert page.page.locator("main img[src=x]").count() == 0

@@ -175,6 +175,22 @@ class Chart:
                 headings += [f"{one.label}: low", f"{one.label}: high"]
         return Table(shown, tuple(headings), tuple(self._row(number) for number in rows))
 
+    @property
+    def lines_told(self) -> tuple[str, ...]:
+        """What lies over the series, in words: limits from above, then marks in their order."""
+        unit = f" {self.y_unit}" if self.y_unit else ""
+        limits = sorted(self.limits, key=lambda one: one.y, reverse=True)
+        marks = sorted(self.marks, key=lambda one: one.x)
+        return (
+            *(f"{one.label}, at {plain(one.y, DIGITS, with_commas=False)}{unit}" for one in limits),
+            *(f"{one.label}, at {self._place(one.x)}" for one in marks),
+        )
+
+    def _place(self, x: float) -> str:
+        if self.x_kind is AxisKind.TIME:
+            return f"{_instant(x)} UTC"
+        return f"{plain(x, 7, with_commas=False)} {self.x_unit}".rstrip()
+
     def _row(self, number: int) -> tuple[str, ...]:
         at = self.x[number]
         first = _instant(at) if self.x_kind is AxisKind.TIME else plain(at, 7, with_commas=False)

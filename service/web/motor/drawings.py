@@ -17,6 +17,13 @@ from service.pictures.looks import PAGE, Look
 from service.pictures.supply import supply_picture
 from service.storage import Repository
 from service.storage.records.history import SeenRecord
+from service.web.motor.picture_tables import (
+    PictureTables,
+    asymmetry_table,
+    load_table,
+    profile_table,
+    supply_table,
+)
 from service.web.pictures import markup
 
 MOST_RECORDS: Final = 240
@@ -26,12 +33,16 @@ PROFILE_DAYS: Final = 90
 
 @dataclass(frozen=True, slots=True)
 class MotorDrawings:
-    """Pictures as SVG. records: how many they show.  profile_of: what the load profile is made of."""
+    """Pictures as SVG. tables: the values behind them.  records: how many they show.
+
+    profile_of: what the load profile is made of.
+    """
 
     asymmetry: Markup
     load: Markup
     supply: Markup
     profile: Markup
+    tables: PictureTables
     records: int
     profile_of: str
 
@@ -60,12 +71,15 @@ def motor_drawings(
         detectable=condition.reference.detectable,
         state=condition.state.value,
     )
-    supply = supply_points(seen)
+    supply, loads = supply_points(seen), load_points(seen)
     return MotorDrawings(
         asymmetry=markup(asymmetry_picture(motor.name, found, look=look)),
-        load=markup(load_picture(motor.name, load_points(seen), limit=limit, look=look)),
+        load=markup(load_picture(motor.name, loads, limit=limit, look=look)),
         supply=markup(supply_picture(motor.name, supply, look=look)),
         profile=markup(load_profile_picture(motor.name, shares, of_what=profile_of, look=look)),
+        tables=PictureTables(
+            asymmetry_table(found), load_table(loads), supply_table(supply), profile_table(shares, profile_of)
+        ),
         records=len(seen),
         profile_of=profile_of,
     )

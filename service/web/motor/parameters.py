@@ -72,7 +72,7 @@ def _chart(motor: str, parameter: TrackedParameter, points: Sequence[TrackedPoin
         key=f"parameter-{column.replace('_', '-')}",
         caption=f"{words.capitalize()} of {motor}",
         x_label="time",
-        y_label="change since the first records",
+        y_label="change",
         y_unit="%",
         x_kind=AxisKind.TIME,
         x=[round(one.time_ns / NANOSECONDS_PER_SECOND, 3) for one in points],

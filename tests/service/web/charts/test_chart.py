@@ -49,3 +49,24 @@ def test_a_long_table_is_thinned_keeps_extremes_and_says_so() -> None:
 def test_a_chart_of_nothing_has_a_table_of_nothing() -> None:
     assert chart([]).table.rows == ()
     assert chosen_rows([[None, None]], 2, 1) == (0, 1)
+
+
+def test_limits_and_marks_are_told_in_words() -> None:
+    one = Chart(
+        "level",
+        "Fault level",
+        "time",
+        "level",
+        [86400.0],
+        [Series("level", [2.0], unit="%")],
+        y_unit="%",
+        x_kind=AxisKind.TIME,
+        limits=[Limit(0.5, "limit"), Limit(2.0, "next level")],
+        marks=[Mark(90000.0, "start"), Mark(86460.0, "note")],
+    )
+    assert one.lines_told == (
+        "next level, at 2 %",
+        "limit, at 0.5 %",
+        "note, at 1970-01-02 00:01:00 UTC",
+        "start, at 1970-01-02 01:00:00 UTC",
+    )

@@ -2,6 +2,7 @@
 /** What people move a chart with: keys, buttons for zoom, and buttons that show and hide its series. */
 
 import { nearest } from "./description.js";
+import { looksOf, sampleOf } from "./looks.js";
 
 /** @typedef {import("./chart.js").Chart} Chart */
 
@@ -63,13 +64,16 @@ export function addTools(chart) {
 export function addLegend(chart) {
   const row = chart.figure.querySelector("[data-chart-legend]");
   if (!row) return;
+  const { series } = chart.description;
+  const looks = looksOf(series);
   row.replaceChildren(
-    ...chart.description.series.map((one) => {
+    ...series.map((one, number) => {
       const button = buttonOf(one.label, () => {
         chart.toggle(one.label);
         button.setAttribute("aria-pressed", String(!chart.hidden.has(one.label)));
       });
-      button.className = `tone-${one.tone} kind-${one.kind}`;
+      button.className = `tone-${one.tone}`;
+      button.prepend(sampleOf(one, looks[number]));
       button.setAttribute("aria-pressed", String(!chart.hidden.has(one.label)));
       return button;
     }),

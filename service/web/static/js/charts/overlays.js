@@ -19,18 +19,28 @@ export function limitsAndMarks(plot, description, markers, theme) {
   ctx.clip();
   ctx.font = `${LETTERING * ratio}px ${getComputedStyle(document.body).fontFamily}`;
   ctx.lineWidth = ratio;
+  /** @type {{base: number, end: number}[]} */
+  const labels = [];
   for (const limit of description.limits ?? []) {
     const y = plot.valToPos(limit.y, "y", true);
     stroke(ctx, theme.of(limit.tone), [4, 3], ratio, [box.left, y], [box.left + box.width, y]);
     ctx.textAlign = "left";
+    const wide = ctx.measureText(limit.label).width;
     const above = y - box.top > 1.5 * LETTERING * ratio;
-    ctx.fillText(limit.label, box.left + 4 * ratio, above ? y - 3 * ratio : y + LETTERING * ratio);
+    const base = above ? y - 4 * ratio : y + (LETTERING + 2) * ratio;
+    const beside = labels.filter((one) => Math.abs(one.base - base) < 1.3 * LETTERING * ratio);
+    const begin = Math.max(box.left, ...beside.map((one) => one.end)) + 4 * ratio;
+    labels.push({ base, end: begin + wide + 4 * ratio });
+    ctx.fillStyle = theme.of("surface"); // a ground: the label may lie over lines of the chart
+    ctx.fillRect(begin - 2 * ratio, base - LETTERING * ratio, wide + 4 * ratio, (LETTERING + 2) * ratio);
+    ctx.fillStyle = theme.of(limit.tone);
+    ctx.fillText(limit.label, begin, base);
   }
   let rightmost = -Infinity;
   for (const mark of description.marks ?? []) {
     const x = plot.valToPos(mark.x, "x", true);
     stroke(ctx, theme.of(mark.tone), [2, 2], ratio, [x, box.top], [x, box.top + box.height]);
-    // Labels that would lie over one another are left to the list beneath the chart.
+    // Labels that would lie over one another stand in the list beneath the chart alone.
     if (x < rightmost || x < box.left || x > box.left + box.width) continue;
     ctx.textAlign = "left";
     const width = ctx.measureText(mark.label).width;

@@ -1,6 +1,7 @@
 // @ts-check
 /** Draws a chart's description with uPlot: lines, bands, axes, and what lies over them. */
 
+import { drawPoints, looksOf } from "./looks.js";
 import { limitsAndMarks } from "./overlays.js";
 import { colours } from "./theme.js";
 import { inStepsOf } from "./words.js";
@@ -12,8 +13,6 @@ const USUAL_WIDTH = 600; // CSS pixels
 const NARROW = 480; // CSS pixels
 const LONGEST_NAME = 10; // letters beside a row
 const STATE_HEIGHT = 0.7; // of its row
-/** Dashes tell the phases apart where colours do not. @type {Record<string, number[]>} */
-const DASHES = { b: [8, 3], c: [2, 2] };
 
 /**
  * Draw into a place.
@@ -41,7 +40,12 @@ export function plotted(place, description, { width: known, hidden, markers, onS
     hooks: {
       setSelect: [onSelect],
       setCursor: [onCursor],
-      draw: [(/** @type {any} */ plot) => limitsAndMarks(plot, description, markers(), theme)],
+      draw: [
+        (/** @type {any} */ plot) => {
+          drawPoints(plot, description.series, hidden, theme);
+          limitsAndMarks(plot, description, markers(), theme);
+        },
+      ],
     },
   };
   // @ts-expect-error uPlot is a script of its own, not a module
@@ -67,12 +71,14 @@ export function columns({ x, series, rows }) {
 function lines({ series }, theme, hidden) {
   const bands = [];
   const drawn = /** @type {any[]} */ ([{}]);
-  for (const one of series) {
+  const looks = looksOf(series);
+  for (const [number, one] of series.entries()) {
     const show = !hidden.has(one.label);
-    drawn.push({ ...line(one, theme), show });
+    const { dash } = looks[number];
+    drawn.push({ ...line(one, dash, theme), show });
     if (one.low && one.high) {
       if (show) bands.push({ series: [drawn.length + 1, drawn.length], fill: theme.faint(one.tone) });
-      drawn.push({ ...edge(one, theme), show }, { ...edge(one, theme), show });
+      drawn.push({ ...edge(one, dash, theme), show }, { ...edge(one, dash, theme), show });
     }
   }
   return { series: drawn, bands };
@@ -121,22 +127,22 @@ function withUnit({ label, unit }) {
   return unit ? `${label} (${unit})` : label;
 }
 
-/** @param {SeriesDescription} one @param {import("./theme.js").Theme} theme */
-function line(one, theme) {
+/** @param {SeriesDescription} one @param {number[]} dash @param {import("./theme.js").Theme} theme */
+function line(one, dash, theme) {
   // @ts-expect-error uPlot is a script of its own, not a module
   const paths = one.kind === "steps" ? window.uPlot.paths.stepped({ align: 1 }) : one.kind === "points" || one.kind === "envelope" ? () => null : undefined;
   return {
     label: one.label,
     stroke: theme.of(one.tone),
     width: one.kind === "dashes" || one.kind === "thin" ? 1 : 1.5,
-    dash: one.kind === "dashes" ? [2, 3] : DASHES[one.tone],
+    dash,
     paths,
-    points: { show: one.kind === "points" ? true : one.kind === "envelope" ? false : undefined, size: 5 },
+    points: { show: one.kind === "points" || one.kind === "envelope" ? false : undefined, size: 5 },
   };
 }
 
-/** @param {SeriesDescription} one @param {import("./theme.js").Theme} theme */
-function edge(one, theme) {
+/** @param {SeriesDescription} one @param {number[]} dash @param {import("./theme.js").Theme} theme */
+function edge(one, dash, theme) {
   const colour = one.kind === "envelope" ? theme.of(one.tone) : theme.faint(one.tone);
-  return { stroke: colour, width: 1, points: { show: false } };
+  return { stroke: colour, width: 1, dash: one.kind === "envelope" ? dash : [], points: { show: false } };
 }
