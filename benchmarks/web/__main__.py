@@ -12,6 +12,7 @@ import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -23,7 +24,7 @@ from benchmarks.web.every_page import faults_of_pages
 from benchmarks.web.filling import LONG, Plan, fill
 from benchmarks.web.painting import Painting, painting
 from benchmarks.web.recordings import store_long_recording
-from benchmarks.web.viewers import load
+from benchmarks.web.viewers import load, raise_one_more
 from service.configuration.settings import sqlite_url
 from service.storage import Repository, connect, migrate
 from testing.web.chromium import INSTALL, chromium_path, running_browser
@@ -38,7 +39,7 @@ class Goal:
     """A page and what it may cost, where there is a goal.
 
     answer_s: 95 % of its answers.  paint_s: its first contentful paint.  bytes: with all that it fetches.
-    charts_s: from the data of its charts to their lines on the screen.
+    charts_s: from the data of its charts to their lines on the screen.  changes: before each answer.
     """
 
     name: str
@@ -47,6 +48,7 @@ class Goal:
     paint_s: float | None = None
     bytes: int | None = None
     charts_s: float | None = None
+    changes: bool = False
 
 
 def main() -> None:
@@ -57,7 +59,7 @@ def main() -> None:
     turns = QUICK_TURNS if arguments.quick else TURNS
     with _data(arguments) as data, serving(data) as site:
         goals = _goals(data)
-        missed = _pages(site, path, goals, turns)
+        missed = _pages(site, path, goals, turns, data)
         missed += _looked_at(site, path, data)
         if arguments.home_assistant is not None:
             with running_browser(path) as browser:
@@ -119,6 +121,7 @@ def _goals(data: Path) -> Sequence[Goal]:
     motor = motor_name(LONG)
     return (
         Goal("fleet", "/", answer_s=0.150, paint_s=0.8, bytes=250_000),
+        Goal("fleet, after a change each", "/", answer_s=0.150, changes=True),
         Goal("motor, 100,000 points", f"/motors/{motor}?days=all", answer_s=0.200),
         Goal("motor, usual span", f"/motors/{motor}", answer_s=0.200, paint_s=0.8),
         Goal("starts", f"/motors/{motor}/starts"),
@@ -131,12 +134,14 @@ def _goals(data: Path) -> Sequence[Goal]:
     )
 
 
-def _pages(site: Site, chromium: str, goals: Sequence[Goal], turns: int) -> list[str]:
+def _pages(site: Site, chromium: str, goals: Sequence[Goal], turns: int, data: Path) -> list[str]:
     rows: list[Sequence[str]] = []
     missed: list[str] = []
+    engine = connect(sqlite_url(data))
+    change = partial(raise_one_more, Repository(engine))
     with running_browser(chromium) as browser:
         for goal in goals:
-            found = answers(site, goal.path, turns=turns)
+            found = answers(site, goal.path, turns=turns, change=change if goal.changes else None)
             painted = painting(browser, site, goal.path)
             rows.append(
                 (
@@ -153,6 +158,7 @@ def _pages(site: Site, chromium: str, goals: Sequence[Goal], turns: int) -> list
                 )
             )
             missed += _missed(goal, found, painted)
+    engine.dispose()
     times = ("Answer", "95 %", "Of a core", "Size", "First paint", "Slowest", "Charts")
     header = ("Page", *times, "With all files", "Files")
     print("\n".join(table(header, rows)), flush=True)

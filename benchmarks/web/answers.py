@@ -3,7 +3,7 @@
 import subprocess
 import sys
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from math import ceil
@@ -66,11 +66,16 @@ class Answers:
         return ordered[max(ceil(share * len(ordered)) - 1, 0)]
 
 
-def answers(site: Site, path: str, *, turns: int) -> Answers:
-    """Ask for an address so many times, after a first time that does not count."""
+def answers(site: Site, path: str, *, turns: int, change: Callable[[], None] | None = None) -> Answers:
+    """Ask for an address so many times, after a first time that does not count.
+
+    change: changes the plant before each time, so that no answer is one that the service has made before.
+    """
     times_s, size, used_s = [], 0, 0.0
     with site.client() as client:
         for turn in range(turns + 1):
+            if change is not None:
+                change()
             begun_s, before_s = time.perf_counter(), site.processor_s()
             with client.stream("GET", path) as answer:
                 size = sum(len(part) for part in answer.iter_raw())

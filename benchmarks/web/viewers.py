@@ -73,6 +73,12 @@ class Load:
     longest_told_s: float
 
 
+def raise_one_more(repository: Repository) -> None:
+    """Change the plant: another alarm comes."""
+    subject = f"HR_{time.time_ns()}.CFG"
+    repository.raise_alarm(relay_name(7), AlarmKind.FILE_REFUSED, subject, "too short", now_ns=time.time_ns())
+
+
 def load(site: Site, repository: Repository, viewers: int, *, seconds: float) -> Load:
     """Measure the service for a while in which the plant changes every few seconds."""
     with looking(site, viewers) as there:
@@ -81,10 +87,7 @@ def load(site: Site, repository: Repository, viewers: int, *, seconds: float) ->
         changed_s: list[float] = []
         while time.monotonic() - begun_s < seconds:
             changed_s.append(time.monotonic())
-            subject = f"HR_{time.time_ns()}.CFG"
-            repository.raise_alarm(
-                relay_name(7), AlarmKind.FILE_REFUSED, subject, "too short", now_ns=time.time_ns()
-            )
+            raise_one_more(repository)
             time.sleep(CHANGE_EVERY_S)
         spent_s = time.monotonic() - begun_s
         cores = (site.processor_s() - used_s) / spent_s
