@@ -80,6 +80,26 @@ CATALOGUE: Final[Mapping[AlarmKind, AlarmDescription]] = {
         "three records in a row show less than half of what is told, the motor's reference is restarted, or "
         "the motor leaves the plant",
     ),
+    AlarmKind.HARD_STARTS: AlarmDescription(
+        AlarmPriority.HIGH,
+        "One of the latest three starts came sooner than the motor file's `starts_per_hour` allows, or "
+        "brought the rotor 90 % or more of the heat that it withstands.",
+        "Starts heat the rotor most: one more before it has cooled may break bars or melt a cage, and the "
+        "winding ages fast.",
+        "Let the motor cool before the next start, find out who or what starts it so often or so long, and "
+        "compare the relay's limits of starts with the motor's data sheet.",
+        "none of the latest three starts shows it, or the motor leaves the plant",
+    ),
+    AlarmKind.CHANGED_STARTS: AlarmDescription(
+        AlarmPriority.MEDIUM,
+        "The latest starts, taken together, are other than the first ones: the load, the supply or the rotor "
+        "has changed, or they take longer and it is not told why.",
+        "What takes longer to start heats more each time; a load that sticks, a weak supply or a worse rotor "
+        "may stall the motor one day.",
+        "Do what the advice of the alarm says, at the next planned stop at the latest.",
+        "the latest three starts are as the first ones again, the reference begins anew (motor rewound, "
+        "recorder changed, reference restarted), or the motor leaves the plant",
+    ),
     AlarmKind.MISSING_DATA: AlarmDescription(
         AlarmPriority.MEDIUM,
         "The motor has no valid record for longer than its schedule promises, and was not seen to stand.",

@@ -21,6 +21,8 @@ class AlarmKind(StrEnum):
     ROTOR_FAULT = "rotor-fault"
     ROTOR_WATCH = "rotor-watch"
     PARAMETER_DRIFT = "parameter-drift"
+    HARD_STARTS = "hard-starts"
+    CHANGED_STARTS = "changed-starts"
     MISSING_DATA = "missing-data"
     LINK_DOWN = "link-down"
     SITE_LOST = "site-lost"

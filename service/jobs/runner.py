@@ -376,6 +376,8 @@ class JobRunner:
                     return
                 if rotor is not None:
                     self._repository.settle_rotor_alarm(claimed.motor, now_ns=now_ns)
+                if start is not None or claimed.is_repetition:
+                    self._repository.settle_start_alarms_of(claimed.motor, now_ns=now_ns)
                 is_first = not claimed.is_repetition  # a repetition tells of the clock as it was
                 if is_first and claimed.ied is not None and claimed.triggered_ns is not None:
                     record = TriggeredRecord(

@@ -7,7 +7,7 @@ from core.classification.motor import MOST_LOADS, MOST_RECORDS, MotorEvidence, c
 from core.classification.record_answer import RecordAnswer
 from core.condition.kinds import Kind, State
 from core.starts.compared import StartChanges
-from service.api.starts.comparison import LATEST, reference_of
+from service.alarms.start_rules import LATEST
 from service.storage import Repository
 
 
@@ -43,4 +43,4 @@ def motor_answer(repository: Repository, motor: str) -> MotorAnswer:
 
 def _starts(repository: Repository, motor: str) -> StartChanges | None:
     latest = repository.starts(motor, limit=LATEST).items
-    return reference_of(repository, motor).compared(latest) if latest else None
+    return repository.start_reference(motor).compared(latest) if latest else None

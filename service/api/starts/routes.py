@@ -11,9 +11,9 @@ from service.api.context import Context
 from service.api.document import Name
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
-from service.api.starts.comparison import Reference, reference_of, within_hour
+from service.api.starts.comparison import within_hour
 from service.api.starts.schemas import StartDetails, StartSummary
-from service.storage.records import StartEntry
+from service.storage.records import StartEntry, StartReference
 
 router = APIRouter(prefix="/motors/{name}/starts", tags=["motors"])
 
@@ -24,7 +24,7 @@ def list_starts(
 ) -> Page[StartSummary]:
     """Return the starts of a motor, latest first, each beside the reference."""
     found = context.repository.starts(name, limit=limit, after=decode(cursor, int, str))
-    reference = reference_of(context.repository, name)
+    reference = context.repository.start_reference(name)
     counts = within_hour(context.repository, found.items)
     return page(
         found,
@@ -36,7 +36,7 @@ def list_starts(
 def get_start(context: Context, name: Name, recording_id: UUID) -> StartDetails:
     """Return one start with its curves, and what the motor's model tells of it."""
     entry = context.repository.start(name, str(recording_id))
-    reference = reference_of(context.repository, name)
+    reference = context.repository.start_reference(name)
     counts = within_hour(context.repository, [entry])
     return StartDetails.model_validate(
         _summary(entry, reference, counts[entry.recording_id])
@@ -45,7 +45,7 @@ def get_start(context: Context, name: Name, recording_id: UUID) -> StartDetails:
     )
 
 
-def _summary(entry: StartEntry, reference: Reference, within: int) -> dict[str, object]:
+def _summary(entry: StartEntry, reference: StartReference, within: int) -> dict[str, object]:
     filled = entry.filled
     start, torque, stress, sideband = filled.figures, filled.torque, filled.stress, filled.sideband
     changes = reference.compared([entry])

@@ -83,7 +83,13 @@ from service.storage.records.relays import (
     RelayFindings,
 )
 from service.storage.records.rotor_and_supply import RecordsBeyond, RotorEntry, SupplyEntry, SupplyQuantity
-from service.storage.records.starts import ImportedStart, ReportedStart, ReportOutcome, StartEntry
+from service.storage.records.starts import (
+    ImportedStart,
+    ReportedStart,
+    ReportOutcome,
+    StartEntry,
+    StartReference,
+)
 
 __all__ = [
     "SERVICE",
@@ -174,6 +180,7 @@ __all__ = [
     "SiteEntry",
     "StandingRotor",
     "StartEntry",
+    "StartReference",
     "SupplyEntry",
     "SupplyQuantity",
     "ToObserve",

@@ -1,11 +1,15 @@
 """Starts as the repository takes and hands them out."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
+from core.starts.changes import compare_starts
+from core.starts.compared import StartChanges
 from core.starts.examined import ExaminedStart
 from core.starts.figures import MotorStart
 from core.starts.filling import filled_by_report
+from service.storage.records.conditions import ConditionEvent
 from service.storage.states import StartSource
 
 
@@ -68,3 +72,32 @@ class StartEntry:
     def from_report(self) -> tuple[str, ...]:
         """Names of the figures of `filled` that a record does not show and the relay's report tells."""
         return () if self.reported is None else filled_by_report(self.examined, self.reported)[1]
+
+
+@dataclass(frozen=True, slots=True)
+class StartReference:
+    """What the starts of a motor are compared with: recorded ones or, where there are none, reported ones.
+
+    A relay measures its acceleration time by another rule, so that starts of both kinds are not compared.
+
+    renewed: what made the reference begin anew; None where nothing did.
+    """
+
+    starts: Sequence[StartEntry]
+    renewed: ConditionEvent | None
+
+    def holds(self, entry: StartEntry) -> bool:
+        """Return whether a start is one of the reference, or was before it."""
+        renewed = self.renewed is not None and entry.time_ns < self.renewed.time_ns
+        return renewed or any(entry.recording_id == one.recording_id for one in self.starts)
+
+    def is_like(self, entry: StartEntry) -> bool:
+        """Return whether a start is told by what tells of the reference; without one, any is."""
+        return not self.starts or entry.source is self.starts[0].source
+
+    def compared(self, entries: Sequence[StartEntry]) -> StartChanges | None:
+        """Return how starts, taken together, differ from the reference; None for those that belong to it."""
+        later = [entry for entry in entries if self.is_like(entry) and not self.holds(entry)]
+        if not later:
+            return None
+        return compare_starts([one.examined for one in later], [one.examined for one in self.starts])

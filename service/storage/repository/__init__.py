@@ -20,6 +20,7 @@ from service.storage.repository.history.metered import MeteredRows
 from service.storage.repository.history.neighbours import NeighbourRows
 from service.storage.repository.history.rotor import RotorRows
 from service.storage.repository.history.seen_records import SeenRecordRows
+from service.storage.repository.history.start_reference import StartReferenceRows
 from service.storage.repository.history.start_reports import StartReportRows
 from service.storage.repository.history.starts import StartRows
 from service.storage.repository.history.supply import SupplyRows
@@ -72,6 +73,7 @@ class Repository(
     SeenRecordRows,
     MeteredRows,
     StartRows,
+    StartReferenceRows,
     StartReportRows,
     RotorRows,
     SupplyRows,

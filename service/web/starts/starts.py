@@ -7,8 +7,9 @@ from typing import Final
 from markupsafe import Markup
 
 from core.starts.compared import StartChanges
+from service.alarms.start_rules import LATEST
 from service.api.pages import decode, encode
-from service.api.starts.comparison import LATEST, reference_of, within_hour
+from service.api.starts.comparison import within_hour
 from service.pictures.looks import PAGE, Look
 from service.pictures.starts import StartLine, starts_picture
 from service.storage import Repository
@@ -80,7 +81,7 @@ def starts_of_motor(
 ) -> StartsOfMotor:
     """Read what the page of a motor's starts shows. Raises NotFoundError, ProblemError."""
     page = repository.starts(motor, limit=MOST_LISTED, after=decode(cursor, int, str))
-    first_ones = reference_of(repository, motor)
+    first_ones = repository.start_reference(motor)
     reference = first_ones.starts[0] if first_ones.starts else None
     counts = within_hour(repository, page.items)
     latest = page.items if cursor is None else repository.starts(motor, limit=OVERLAID).items

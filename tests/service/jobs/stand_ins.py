@@ -6,11 +6,13 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
+from core.starts.examined import ExaminedStart, StartStress
 from service.jobs import Diagnosed, DiagnosisTask, Outcome, Rejected
 from service.jobs.worker_process import follow_service
 from service.recording_store.recording import LocalFile
 from testing.service.plants import NOW_NS, SECOND_NS, fault
 from testing.service.rotor_and_supply import BROKEN_ROTOR, SUPPLY
+from testing.service.starts import START
 from testing.waiting import wait_until
 
 GO = "STAND_IN_GO"
@@ -79,6 +81,9 @@ def act_as_told(task: DiagnosisTask) -> Outcome:
         return Diagnosed(RESULTS[told], NOW_NS)
     if told == "broken bars":
         return Diagnosed(fault(), NOW_NS, rotor=BROKEN_ROTOR, supply=SUPPLY)
+    if told == "hot start":
+        stress = StartStress(350.0, None, 0.95, None, "motor file", None)
+        return Diagnosed(fault(), NOW_NS, start=ExaminedStart(START, stress=stress))
     if told == "year 9999":
         return Diagnosed(fault(), 253_402_300_799 * SECOND_NS)
     if told == "die" or (told == "die once" and not first_time.exists()):

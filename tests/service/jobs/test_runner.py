@@ -40,7 +40,7 @@ def test_every_recording_comes_to_its_end_whatever_the_workers_do(
     repository: Repository, store: FolderStore
 ) -> None:
     """One run for all of it: worker processes take a second to start."""
-    told = ("fine", "reject", "raise", "die", "die once", "broken bars")
+    told = ("fine", "reject", "raise", "die", "die once", "broken bars", "hot start")
     ids = {what: add(repository, store, what) for what in told}
     ids["foreign"] = add(repository, store, "fine too", "FAN-A2")
     ids["lost"] = add(repository, store, "lost")
@@ -58,6 +58,7 @@ def test_every_recording_comes_to_its_end_whatever_the_workers_do(
         "die": "failed",
         "die once": "diagnosed",
         "broken bars": "diagnosed",
+        "hot start": "diagnosed",
         "foreign": "rejected",
         "lost": "rejected",
     }
@@ -70,9 +71,9 @@ def test_every_recording_comes_to_its_end_whatever_the_workers_do(
     (rotor,) = repository.rotor_trend("PUMP-A1", limit=10).items
     (supply,) = repository.supply_trend("PUMP-A1", limit=10).items
     assert (rotor.recording_id, supply.recording_id) == (ids["broken bars"],) * 2
-    assert [one.kind for one in repository.open_alarms(motor="PUMP-A1", limit=10).items] == [
-        AlarmKind.ROTOR_WATCH
-    ]
+    alarms = {one.kind: one for one in repository.open_alarms(motor="PUMP-A1", limit=10).items}
+    assert set(alarms) == {AlarmKind.ROTOR_WATCH, AlarmKind.HARD_STARTS}
+    assert alarms[AlarmKind.HARD_STARTS].recording_id == ids["hot start"]
 
 
 def test_whatever_a_result_holds_its_job_alone_fails(

@@ -9,6 +9,7 @@ from service.storage.repository.alarms.lists import AlarmLists
 from service.storage.repository.alarms.people import AlarmPeopleRows
 from service.storage.repository.alarms.rotor import RotorAlarmRows
 from service.storage.repository.alarms.sources import AlarmSourceRows
+from service.storage.repository.alarms.starts import StartAlarmRows
 from service.storage.repository.alarms.suppression import AlarmSuppressionRows
 
 
@@ -19,6 +20,7 @@ class AlarmRows(
     AlarmSuppressionRows,
     ConditionAlarmRows,
     RotorAlarmRows,
+    StartAlarmRows,
     AlarmFigureRows,
     AlarmCallRows,
     AlarmSourceRows,

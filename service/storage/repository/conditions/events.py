@@ -17,8 +17,10 @@ from service.storage.errors import (
 from service.storage.models import ConditionEventRow, MotorRow
 from service.storage.records import ConditionEvent, Cursor, Page
 from service.storage.records.actors import Actor
+from service.storage.repository.alarms.starts import settle_start_alarms
 from service.storage.repository.audit.entries import note_change
 from service.storage.repository.conditions.fold_marks import mark
+from service.storage.repository.history.start_reference import RENEWING
 from service.storage.repository.motor_versions import MOTORS_FILE
 from service.storage.repository.sessions import (
     Order,
@@ -50,7 +52,8 @@ class ConditionEventRows(Sessions):
         TooManyNotesError.
         """
         with self._write() as session:
-            if not found(session, MotorRow, motor, "motor", lock=True).in_service:
+            place = found(session, MotorRow, motor, "motor", lock=True)
+            if not place.in_service:
                 raise OutOfServiceError("motor", motor)
             told = select(ConditionEventRow.id).where(
                 ConditionEventRow.motor == motor, ConditionEventRow.kind != EventKind.PARAMETERS_EDITED
@@ -58,6 +61,8 @@ class ConditionEventRows(Sessions):
             if most_notes is not None and has_as_many(session, told, most_notes):
                 raise TooManyNotesError(motor, most_notes)
             kept = keep_event(session, motor, event, told_by or by.name, now_ns)
+            if event.kind in RENEWING:
+                settle_start_alarms(session, place, now_ns=now_ns)
             is_restart = event.kind is EventKind.REFERENCE_RESTARTED
             action = AuditAction.REFERENCE_RESTARTED if is_restart else AuditAction.NOTE_ADDED
             note_change(session, by, action, ("motor", motor), now_ns=now_ns, after=_noted(kept))
@@ -79,7 +84,7 @@ class ConditionEventRows(Sessions):
         was withdrawn before, or is what the motors file tells).
         """
         with self._write() as session:
-            found(session, MotorRow, motor, "motor", lock=True)
+            place = found(session, MotorRow, motor, "motor", lock=True)
             row = _event(session, motor, event_id)
             # A person may be called as the file is, but tells of no edit.
             is_of_the_file = row.kind is EventKind.PARAMETERS_EDITED and row.by == MOTORS_FILE
@@ -90,6 +95,8 @@ class ConditionEventRows(Sessions):
             row.withdrawn_by = storable(told_by or by.name)
             if row.kind is not EventKind.NOTE:
                 mark(session, motor, row.time_ns)
+            if row.kind in RENEWING:
+                settle_start_alarms(session, place, now_ns=now_ns)
             after = {"reason": reason, "told_by": row.withdrawn_by}
             note_change(
                 session,

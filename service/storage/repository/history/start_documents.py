@@ -10,7 +10,7 @@ from core.rotor.start_finding import StartSideband
 from core.starts.examined import ExaminedStart, StartParameters, StartStress, StartTorque
 from core.starts.figures import MotorStart, StartCurve
 from service.storage.models import StartRow
-from service.storage.records import ReportedStart
+from service.storage.records import ReportedStart, StartEntry
 from service.storage.states import StartSource
 
 FIGURES = (
@@ -40,6 +40,16 @@ def start_row(recording_id: str, motor: str, time_ns: int, start: ExaminedStart)
         source=StartSource.RECORDING,
         **{name: getattr(start.figures, name) for name in FIGURES},
     )
+
+
+def start_entry(row: StartRow, *_: object) -> StartEntry:
+    """Return a start as the repository hands it out."""
+    figures: dict[str, Any] = {name: getattr(row, name) for name in FIGURES}
+    examined = examined_start(start_figures(figures, row.curve), row.model)
+    # The row of a report that has no recording says the same.
+    told = row.report if row.source is StartSource.RECORDING else None
+    reported = None if told is None else reported_start(told).examined
+    return StartEntry(row.recording_id, row.motor, row.time_ns, examined, row.source, reported)
 
 
 def report_document(start: ReportedStart) -> Mapping[str, Any]:

@@ -12,6 +12,7 @@ from service.audit.actions import AuditAction
 from service.storage.models import MotorRow, StartRow
 from service.storage.records import ImportedStart, ReportedStart, ReportOutcome
 from service.storage.records.actors import Actor
+from service.storage.repository.alarms.starts import settle_start_alarms
 from service.storage.repository.audit.entries import note_change
 from service.storage.repository.history.start_documents import report_document, reported_start, start_row
 from service.storage.repository.sessions import Sessions, found
@@ -30,7 +31,7 @@ class StartReportRows(Sessions):
         by: None leaves no entry in the audit trail.  Raises NotFoundError.
         """
         with self._write() as session:
-            found(session, MotorRow, motor, "motor", lock=True)
+            row = found(session, MotorRow, motor, "motor", lock=True)
             imported = tuple(_import(session, motor, start) for start in starts)
             counts = {
                 outcome.value: sum(one.outcome is outcome for one in imported) for outcome in ReportOutcome
@@ -39,6 +40,8 @@ class StartReportRows(Sessions):
             if is_new and by is not None:
                 action, after = AuditAction.REPORT_IMPORTED, {"report": "MSR", **counts}
                 note_change(session, by, action, ("motor", motor), now_ns=now_ns, after=after)
+            if is_new:
+                settle_start_alarms(session, row, now_ns=now_ns)
             return imported
 
 

@@ -2,32 +2,20 @@
 
 from collections.abc import Sequence
 from math import isfinite
-from typing import Any
 
 from sqlalchemy import delete, exists, func, select
 from sqlalchemy.orm import Session
 
 from core.operation import Operation
-from core.starts.changes import REFERENCE_STARTS
 from core.starts.examined import ExaminedStart
 from core.starts.figures import MotorStart
 from service.storage.errors import NotFoundError
 from service.storage.models import MotorRow, RecordingRow, StartRow
 from service.storage.records import Cursor, Page, StartEntry
 from service.storage.repository.conditions.tracking import follow_again, followed_start
-from service.storage.repository.history.start_documents import (
-    FIGURES,
-    examined_start,
-    reported_start,
-    start_figures,
-    start_row,
-)
+from service.storage.repository.history.start_documents import FIGURES, start_entry, start_row
 from service.storage.repository.history.start_reports import leave_report, take_report
 from service.storage.repository.sessions import Order, Sessions, found, page_of
-from service.storage.states import StartSource
-
-LOOKED_AT = 10 * REFERENCE_STARTS
-"""Starts among which the first whole ones are looked for."""
 
 
 class StartRows(Sessions):
@@ -42,7 +30,7 @@ class StartRows(Sessions):
         with self._read() as session:
             if motor is not None:
                 found(session, MotorRow, motor, "motor")
-            return page_of(session, query, order, _entry, limit=limit, after=after, descending=True)
+            return page_of(session, query, order, start_entry, limit=limit, after=after, descending=True)
 
     def start(self, motor: str, recording_id: str) -> StartEntry:
         """Return one start of a motor. Raises NotFoundError."""
@@ -51,7 +39,7 @@ class StartRows(Sessions):
             row = session.get(StartRow, recording_id)
             if row is None or row.motor != motor:
                 raise NotFoundError("start", recording_id)
-            return _entry(row)
+            return start_entry(row)
 
     def times_of_starts(self, motor: str, *, from_ns: int, to_ns: int) -> Sequence[int]:
         """Return when a motor was started between two times, both included, in their order."""
@@ -62,24 +50,6 @@ class StartRows(Sessions):
         )
         with self._read() as session:
             return session.scalars(query).all()
-
-    def first_whole_starts(
-        self, motor: str, *, from_ns: int, source: StartSource = StartSource.RECORDING
-    ) -> Sequence[StartEntry]:
-        """Return the first few starts of a motor from a time on that are told from rest to speed.
-
-        They are looked for among the first `LOOKED_AT` of that source, however many a motor has.
-        """
-        query = (
-            select(StartRow)
-            .where(StartRow.motor == motor, StartRow.time_ns >= from_ns, StartRow.source == source)
-            .order_by(StartRow.time_ns, StartRow.recording_id)
-            .limit(LOOKED_AT)
-        )
-        with self._read() as session:
-            rows = session.scalars(query).all()
-        whole = [row for row in rows if row.is_from_rest and row.acceleration_s is not None]
-        return [_entry(row) for row in whole[:REFERENCE_STARTS]]
 
     def unmeasured_starts(self, motor: str | None = None) -> int:
         """Return how many stored recordings of starts have no figures: those of earlier versions."""
@@ -135,12 +105,3 @@ def _is_finite(start: MotorStart) -> bool:
     figures = [getattr(start, name) for name in FIGURES]
     known = [one for one in (*figures, *curve.current_A, *(curve.voltage_V or ())) if one is not None]
     return all(map(isfinite, known))
-
-
-def _entry(row: StartRow, *_: object) -> StartEntry:
-    figures: dict[str, Any] = {name: getattr(row, name) for name in FIGURES}
-    examined = examined_start(start_figures(figures, row.curve), row.model)
-    # The row of a report that has no recording says the same.
-    told = row.report if row.source is StartSource.RECORDING else None
-    reported = None if told is None else reported_start(told).examined
-    return StartEntry(row.recording_id, row.motor, row.time_ns, examined, row.source, reported)
