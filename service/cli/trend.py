@@ -1,19 +1,43 @@
 """`mcc trend`: one figure of a motor for each of its recordings."""
 
 from collections import deque
+from collections.abc import Callable, Mapping
+from typing import Final
 
 from rich.text import Text
 
+from core.rotor.finding import RotorState
 from service.cli.output import failing_clearly
 from service.cli.rows import Column, print_rows, require_one_format
-from service.client.conditions import state_text
+from service.client.conditions import STATE_COLOURS, state_text
 from service.client.rest_client import Document, ServiceClient, ServiceError, segment
+from service.client.rotor_and_supply import STATES
 from service.client.verdicts import interval, load, percent, to_the_second, verdict_text
 
 FIELDS = (
     "time", "value", "ci95", "scatter95", "detection_limit", "verdict", "state", "kind", "phase",
     "recording_id",
 )  # fmt: skip
+ROTOR_SEVERITY: Final = "rotor_severity_dB"
+SHARES_OF_SUPPLY: Final = (
+    "voltage_deviation", "voltage_unbalance_iec", "voltage_unbalance_nema", "thd_voltage",
+    "current_unbalance", "thd_current",
+)  # fmt: skip
+"""Of what a recording shows of the supply these are told in percent."""
+FIGURES_OF_SUPPLY: Final = {
+    "frequency_hz": ".3f",
+    "harmonic_voltage_factor": ".4f",
+    "derating": ".3f",
+    "active_power_W": ".4g",
+    "power_factor": ".3f",
+}
+"""The others, and how they are written."""
+CHANGES: Final = {
+    f"{parameter}_change": parameter
+    for parameter in ("stator_resistance", "rotor_resistance", "magnetising_inductance", "leakage_inductance")
+}
+"""Changes of the parameters while the motor runs, by the names that exports give them."""
+IN_PERCENT: Final = ("mu_f", "condition_level", "change", *SHARES_OF_SUPPLY, *CHANGES)
 
 
 def show_trend(
@@ -29,33 +53,99 @@ def show_trend(
 ) -> None:
     """Print the latest points of a trend, oldest first. Raises CommandError."""
     require_one_format(as_csv=as_csv, as_json=as_json)
-    window = {name: time for name, time in (("from", first), ("to", end)) if time is not None}
-    path = f"/motors/{segment(motor)}/trend"
+    query = {name: time for name, time in (("from", first), ("to", end)) if time is not None}
+    part, point_of = _source(quantity)
+    if part == "trend":
+        query["quantity"] = quantity
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        found = service.items(path, quantity=quantity, limit="1000", **window)
-        points = list(deque(found, maxlen=limit))
+        found = service.items(f"/motors/{segment(motor)}/{part}", limit="1000", **query)
+        points = [point_of(one) for one in deque(found, maxlen=limit)]
+    print_rows(
+        "points", points, FIELDS, _columns(quantity), as_csv=as_csv, as_json=as_json, whole=("recording",)
+    )
+
+
+def _source(quantity: str) -> tuple[str, Callable[[Document], Document]]:
+    """Return which list of a motor tells a quantity, and what makes a point of its items."""
+    if quantity == ROTOR_SEVERITY:
+        return "rotor/trend", _rotor_point
+    if quantity in CHANGES:
+        return "parameters/trend", lambda one: _change_point(one, CHANGES[quantity])
+    if quantity in (*SHARES_OF_SUPPLY, *FIGURES_OF_SUPPLY):
+        return "supply/trend", lambda one: {
+            **_place(one),
+            "value": one[quantity],
+            "reasons": one["reasons"],
+        }
+    return "trend", lambda one: one
+
+
+def _rotor_point(one: Document) -> Document:
+    return {
+        **_place(one),
+        "value": one["severity_dB"],
+        "ci95": one["severity_dB_ci95"],
+        "detection_limit": one["detection_limit_dB"],
+        "state": one["state"],
+        "reasons": one["reasons"],
+    }
+
+
+def _change_point(one: Document, parameter: str) -> Document:
+    found = one[parameter]
+    change = found if isinstance(found, Mapping) else {}
+    return {**_place(one), "value": change.get("change"), "ci95": change.get("change_ci95")}
+
+
+def _place(one: Document) -> dict[str, object]:
+    return {"time": one["time"], "recording_id": one["recording_id"]}
+
+
+def _columns(quantity: str) -> dict[str, Column]:
     columns: dict[str, Column] = {
         "time": lambda point: to_the_second(point["time"]),
-        quantity if quantity in ("theta_f", "load_level") else f"{quantity} %": lambda point: _value(
-            point, quantity
-        ),
-        "seen from %": lambda point: percent(point["detection_limit"]),
-        "verdict": _said,
-        "recording": lambda point: str(point["recording_id"]),
+        _heading(quantity): lambda point: _value(point, quantity),
     }
-    if quantity != "mu_f":
-        del columns["seen from %"]
-    print_rows("points", points, FIELDS, columns, as_csv=as_csv, as_json=as_json, whole=("recording",))
+    if quantity == "mu_f":
+        columns["seen from %"] = lambda point: percent(point["detection_limit"])
+    if quantity == ROTOR_SEVERITY:
+        columns["seen from dB"] = lambda point: _decibels(point["detection_limit"])
+        columns["rotor"] = _rotor_state
+    elif _source(quantity)[0] == "trend":
+        columns["verdict"] = _said
+    columns["recording"] = lambda point: str(point["recording_id"])
+    return columns
+
+
+def _heading(quantity: str) -> str:
+    """Return a quantity with its unit. Long names are told in words, for a table wraps between these."""
+    words = quantity if _source(quantity)[0] == "trend" else quantity.replace("_hz", " Hz").replace("_", " ")
+    return f"{words} %" if quantity in IN_PERCENT else words
 
 
 def _value(point: Document, quantity: str) -> str:
-    value = point["value"]
+    value, ci95 = point["value"], point.get("ci95")
     if quantity == "load_level":
-        return load(value, point["ci95"])
+        return load(value, ci95)
+    if quantity == ROTOR_SEVERITY:
+        return _decibels(value) + (
+            f" [{_decibels(ci95[0])}..{_decibels(ci95[1])}]" if isinstance(ci95, list) else ""
+        )
+    if quantity in FIGURES_OF_SUPPLY:
+        return format(value, FIGURES_OF_SUPPLY[quantity]) if isinstance(value, int | float) else "-"
     if quantity == "theta_f":
         return "-" if value is None else str(value)
-    between = interval(point["ci95"])
+    between = interval(ci95)
     return percent(value) + ("" if between == "-" else f" [{between}]")
+
+
+def _decibels(value: object) -> str:
+    return f"{value:.1f}" if isinstance(value, int | float) else "-"
+
+
+def _rotor_state(point: Document) -> Text:
+    state = RotorState(str(point["state"]))
+    return Text(STATES[state], style=STATE_COLOURS.get(str(state), ""))
 
 
 def _said(point: Document) -> Text:

@@ -30,7 +30,15 @@ RecordingIds = Annotated[
 Limit = Annotated[int, typer.Option("--limit", min=1, max=100_000, help="Show so many, the latest.")]
 Reason = Annotated[str | None, typer.Option(metavar="TEXT", help="Why; it is kept.")]
 By = Annotated[str | None, typer.Option(metavar="NAME", help="Who says so (default: who is logged in).")]
-Quantity = Literal["mu_f", "theta_f", "load_level", "condition_level", "change"]
+Quantity = Literal[
+    "mu_f", "theta_f", "load_level", "condition_level", "change",
+    "rotor_severity_dB",
+    "frequency_hz", "voltage_deviation", "voltage_unbalance_iec", "voltage_unbalance_nema", "derating",
+    "thd_voltage", "harmonic_voltage_factor", "current_unbalance", "thd_current", "active_power_W",
+    "power_factor",
+    "stator_resistance_change", "rotor_resistance_change", "magnetising_inductance_change",
+    "leakage_inductance_change",
+]  # fmt: skip
 DateOrder = Literal["MDY", "YMD", "DMY"]
 PowerUnit = Literal["W", "kW"]
 State = Literal["announced", "fetched", "diagnosed", "rejected", "failed"]
@@ -43,8 +51,9 @@ def trend(
     quantity: Annotated[
         Quantity,
         typer.Option(
-            help="mu_f, theta_f and load_level are what each recording says by itself; condition_level and "
-            "change what the motor's condition says from it on."
+            help="mu_f, theta_f, load_level, rotor_severity_dB and the figures of the supply (frequency_hz "
+            "to power_factor) are what each recording says by itself; condition_level, change and those "
+            "that end with _change what is said of the motor from it on."
         ),
     ] = "mu_f",
     from_: From = None,

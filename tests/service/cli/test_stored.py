@@ -19,6 +19,7 @@ from service.storage import Repository
 from testing.service.conditions import FAULT, tell
 from testing.service.job_runner import RUNNER
 from testing.service.plants import NOW_NS, SECOND_NS, fault, healthy, motor
+from testing.service.rotor_and_supply import BROKEN_ROTOR, SHORT_RECORD, SUPPLY, ExaminedRecordings
 from testing.service.small_record import CFG, DAT
 from testing.service.starts import START, RecordedStarts
 from tests.core.relay_reports.examples import LDP, MOT, MSR, SER
@@ -138,6 +139,57 @@ def test_a_trend(mcc: Mcc, recorded: list[str]) -> None:
 def test_the_trend_of_a_condition(mcc: Mcc, repository: Repository) -> None:
     tell(repository, FAULT)
     assert mcc("trend", "PUMP-A1", "--quantity", "condition_level") == "no points\n"
+
+
+def test_the_trend_of_the_rotor(mcc: Mcc, repository: Repository, store: RecordingStore) -> None:
+    recorded = ExaminedRecordings(repository, store)
+    recorded.add(SHORT_RECORD, SUPPLY)
+    broken = recorded.add(BROKEN_ROTOR, SUPPLY)
+    words = ("trend", "PUMP-A1", "--quantity", "rotor_severity_dB")
+    shown = " ".join(mcc(*words).split())
+    assert "rotor severity dB seen from dB rotor recording" in shown
+    assert " UTC - - not told " in shown
+    assert f"-29.0 [-31.0..-27.5] -52.0 fault {broken}" in shown
+    first, second = json.loads(mcc(*words, "--json"))["points"]
+    assert (first["value"], first["state"], first["reasons"]) == (
+        None,
+        "unsupported",
+        ["the record is too short for this slip"],
+    )
+    assert (second["value"], second["ci95"], second["detection_limit"]) == (-29.0, [-31.0, -27.5], -52.0)
+    [last] = rows(mcc(*words, "--csv", "--limit", "1"))
+    assert (last["value"], last["ci95_low"], last["detection_limit"]) == ("-29.0", "-31.0", "-52.0")
+    assert (last["state"], last["recording_id"]) == ("fault", broken)
+    assert mcc(*words, "--to", "2025-10-09") == "no points\n"
+
+
+@pytest.mark.parametrize(
+    ("quantity", "heading", "shown"),
+    [
+        ("frequency_hz", "frequency Hz", "50.010"),
+        ("voltage_deviation", "voltage deviation %", "-0.27"),
+        ("voltage_unbalance_iec", "voltage unbalance iec %", "0.71"),
+        ("voltage_unbalance_nema", "voltage unbalance nema %", "0.68"),
+        ("derating", "derating", "1.000"),
+        ("thd_voltage", "thd voltage %", "2.10"),
+        ("harmonic_voltage_factor", "harmonic voltage factor", "0.0085"),
+        ("current_unbalance", "current unbalance %", "2.00"),
+        ("thd_current", "thd current %", "3.50"),
+        ("active_power_W", "active power W", "612.5"),
+        ("power_factor", "power factor", "0.610"),
+    ],
+)
+def test_the_trend_of_the_supply(
+    mcc: Mcc, repository: Repository, store: RecordingStore, quantity: str, heading: str, shown: str
+) -> None:
+    recording = ExaminedRecordings(repository, store).add(None, SUPPLY)
+    table = " ".join(mcc("trend", "PUMP-A1", "--quantity", quantity).split())
+    assert f"time {heading} recording" in table
+    assert f" UTC {shown} {recording}" in table
+    [point] = json.loads(mcc("trend", "PUMP-A1", "--quantity", quantity, "--json"))["points"]
+    assert (point["value"], point["recording_id"]) == (getattr(SUPPLY, quantity), recording)
+    [row] = rows(mcc("trend", "PUMP-A1", "--quantity", quantity, "--csv"))
+    assert float(row["value"]) == getattr(SUPPLY, quantity)
 
 
 @pytest.mark.parametrize("words", [("recordings",), ("recordings", "list")])

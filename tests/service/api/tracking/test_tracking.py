@@ -69,3 +69,21 @@ def test_the_command_tells_it_in_words(client: httpx.Client, capsys: pytest.Capt
     assert "drifting" in words
     assert main(["drift", PUMP, "--json", "--url", str(client.base_url)]) == 0
     assert json.loads(capsys.readouterr().out)["causes"] == ["ratio"]
+
+
+@pytest.mark.usefixtures("drifted")
+def test_the_command_shows_the_trend_of_a_change(
+    client: httpx.Client, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["trend", PUMP, "--quantity", "magnetising_inductance_change", "--url", str(client.base_url)]
+    assert main([*words, "--json"]) == 0
+    points = json.loads(capsys.readouterr().out)["points"]
+    assert points[0]["value"] is None
+    low, high = points[-1]["ci95"]
+    assert low < points[-1]["value"] < high
+    assert low < 0.05 < high
+    assert main([*words, "--limit", "1"]) == 0
+    shown = " ".join(capsys.readouterr().out.split())
+    assert "magnetising inductance" in shown
+    assert f" {100 * points[-1]['value']:.2f} " in shown
+    assert f" [{100 * low:.2f}..{100 * high:.2f}]" in shown
