@@ -10,11 +10,11 @@ Item = TypeVar("Item")
 PAGE = 1000
 
 
-def pages(read: Callable[..., Page[Item]]) -> Iterator[tuple[Item, ...]]:
+def pages(read: Callable[..., Page[Item]], *, size: int = PAGE) -> Iterator[tuple[Item, ...]]:
     """Return the items of every page. read: takes a `limit`, and the cursor `after` which the page begins."""
     after: Cursor | None = None
     while True:
-        page = read(limit=PAGE, after=after)
+        page = read(limit=size, after=after)
         yield page.items
         if page.next is None:
             return

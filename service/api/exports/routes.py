@@ -1,4 +1,4 @@
-"""Files of several motors, or of all: trends, recordings, measurements and alarms."""
+"""Files of several motors, or of all: trends, recordings, starts, measurements and alarms."""
 
 from collections.abc import Sequence
 from typing import Annotated
@@ -13,7 +13,7 @@ from service.api.context import ApiContext, Context
 from service.api.exports.answers import FILES, FileOnly
 from service.api.problems import problems
 from service.api.times import From, To
-from service.exports import alarms, measurements, recordings, trends
+from service.exports import alarms, measurements, recordings, starts, trends
 from service.plant import AveragingStep
 
 MOST_MOTORS = 1000
@@ -63,6 +63,13 @@ def export_recordings(context: Context, answer: FileOnly, motor: Motors = None) 
     """Return the recordings with their verdicts, of one motor after another or of all, latest first."""
     _require(context, motor)
     return answer.of(recordings.TABLE, recordings.recordings(context.repository, motor), motor)
+
+
+@router.get("/starts")
+def export_starts(context: Context, answer: FileOnly, motor: Motors = None) -> StreamingResponse:
+    """Return the starts with their figures, of one motor after another or of all, latest first."""
+    _require(context, motor)
+    return answer.of(starts.TABLE, starts.starts(context.repository, motor), motor)
 
 
 @router.get("/alarms")

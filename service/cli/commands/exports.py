@@ -80,6 +80,20 @@ def recordings(
 
 
 @export.command()
+def starts(
+    motors: Motors = None,
+    url: Url = DEFAULT_URL,
+    wanted: Format = None,
+    output: Output = None,
+    *,
+    overwrite: Overwrite = False,
+    as_json: Json = False,
+) -> None:
+    """Write the starts with their figures, latest first."""
+    _export("starts", url, motors, {}, wanted, output, overwrite, as_json)
+
+
+@export.command()
 def alarms(
     motors: Motors = None,
     url: Url = DEFAULT_URL,

@@ -46,6 +46,7 @@ def test_without_a_file_the_rows_go_to_standard_output(mcc: Mcc, recorded: list[
     assert len(rows(mcc("export", "recordings", "PUMP-A1", "FAN-A2"))) == 4
     assert rows(mcc("export", "measurements", "--step", "60")) == []
     assert rows(mcc("export", "alarms")) == []
+    assert rows(mcc("export", "starts")) == []
     window = rows(
         mcc("export", "trend", "PUMP-A1", "--from", "2025-10-09T08:53:21Z", "--to", "2025-10-09T08:53:23Z")
     )

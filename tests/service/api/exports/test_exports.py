@@ -12,6 +12,7 @@ import openpyxl
 import pytest
 from pyarrow import parquet
 
+from core.starts.examining import examine_start
 from service.api import ApiContext, create_app
 from service.api.exports import answers
 from service.api.limits.admission import Admission
@@ -20,12 +21,15 @@ from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from service.storage.records import Sample
 from service.storage.states import AlarmKind
+from testing.machines.motors import LARGE
+from testing.machines.starts import StartRecord
 from testing.no_room import no_room
 from testing.service.conditions import FAULT, tell
 from testing.service.diagnosed import add_diagnosed
 from testing.service.observations import observation
 from testing.service.plants import NOW_NS, SECOND_NS, fault, undiagnosable
 from testing.service.rotor_and_supply import BROKEN_ROTOR, SUPPLY, ExaminedRecordings
+from testing.service.starts import START, RecordedStarts
 from tests.service.api.serving import serving
 
 XLSX = "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet"
@@ -127,11 +131,42 @@ def test_a_trend_has_what_is_shown_of_rotor_and_supply(
     first, second = read(client.get(TREND, headers={"Accept": accept}))
     figures = {
         "rotor_severity_dB": -29.0, "rotor_severity_dB_ci95_low": -31.0, "rotor_detection_limit_dB": -52.0,
+        "rotor_lower_sideband_dB": -35.5, "rotor_upper_sideband_dB": -41.0, "load_oscillation_dB": -60.0,
         "slip": 0.031, "frequency_hz": 50.01, "voltage_unbalance_nema": 0.0068, "thd_voltage": 0.021,
+        "derating": 1.0, "harmonic_voltage_factor": 0.0085, "current_unbalance": 0.02, "thd_current": 0.035,
+        "active_power_W": 612.5, "power_factor": 0.61,
     }  # fmt: skip
     assert first["rotor_state"] == "fault"
     assert {name: float(first[name]) for name in figures} == figures
     assert not any(second[name] for name in ("rotor_state", *figures))
+
+
+@pytest.mark.parametrize("wanted", ["csv", "xlsx", "parquet"])
+def test_starts_have_what_the_model_tells(
+    client: httpx.Client, repository: Repository, store: RecordingStore, wanted: str
+) -> None:
+    examined = examine_start(StartRecord(snr_db=45.0).of(LARGE), LARGE)
+    assert examined.torque is not None
+    assert examined.parameters is not None
+    recorded = RecordedStarts(repository, store)
+    first, second = recorded.add(START), recorded.add(examined)
+    other = recorded.add(START, "FAN-A2")
+    path = f"{EXPORTS}/starts"
+    rows = read(client.get(path, params={"format": wanted}))
+    assert [row["recording_id"] for row in rows] == [other, second, first]
+    whole, bare = read(client.get(path, params={"format": wanted, "motor": "PUMP-A1"}))
+    name = "rotor_resistance_ohm"
+    figures = {
+        "acceleration_s": examined.figures.acceleration_s,
+        "load_torque_Nm": examined.torque.load_torque_Nm,
+        name: examined.parameters.values[name],
+        f"{name}_ci95_low": examined.parameters.ci95[name][0],
+        f"{name}_ci95_high": examined.parameters.ci95[name][1],
+    }
+    assert {one: float(whole[one]) for one in figures} == pytest.approx(figures, rel=1e-12)
+    assert (float(bare["acceleration_s"]), float(bare["i2t_A2s"])) == (1.25, 333.5)
+    assert int(bare["is_from_rest"]) == 1
+    assert not any(bare[one] for one in ("rotor_state", "load_torque_Nm", name, "share_of_hot_limit"))
 
 
 def test_several_motors_or_all_in_one_file(client: httpx.Client, trend: Sequence[str]) -> None:
