@@ -72,7 +72,8 @@ def sections(pool: Executor, *, quick: bool) -> list[Section]:
             found_rows,
         ),
         "",
-        f"Found: within {RECORDS - FIRST} records. 50 K are 20 % of R_s, of which 15 % are told.",
+        f"Found: within {RECORDS - FIRST} records. 50 K are 20 % of R_s, of which 15 % are told. The "
+        "[reference](../reference/tracking.md#limits) says what hides a hot winding.",
         "",
         "How often the 95 % interval has the true change, of all intervals that are narrow enough to be "
         f"told (half of it at most {_widest()}), and in brackets the share that is: before, 100 records "

@@ -6,15 +6,13 @@ from typing import Final
 from core.classification.amplitude import log_ratio, ratio
 from core.classification.causes import Cause
 from core.classification.evidence import Block, log_sum, only
-from core.rotor.eccentricity import EccentricityFinding
 from core.rotor.finding import LOAD_OSCILLATION, RotorFinding, RotorState
-from core.rotor.pulsation import PulsationFinding
+from core.rotor.swing_findings import EVEN_GAP, STEADY_LOAD, EccentricityFinding, PulsationFinding
 
-EVEN_GAP, UNEVEN_GAPS = 0.004, (0.03, 0.1)
-"""Ripple of the permeance of a sound motor, a tenth of static times a twentieth of dynamic eccentricity, and
-of motors to be looked after."""
-STEADY_LOAD, SWINGING_LOADS = 0.004, (0.03, 0.1)
-"""Swing of a steady load's torque over the rated one, rms, and of loads that pulsate."""
+UNEVEN_GAPS = (0.03, 0.1)
+"""Ripple of the permeance of motors to be looked after."""
+SWINGING_LOADS = (0.03, 0.1)
+"""Swing of the torque of loads that pulsate, over the rated one, rms."""
 TORQUE_NOISE: Final = 0.002
 """Noise of the torque at twice the slip, rms, over rated torque; the rotor's finding does not tell it."""
 

@@ -20,6 +20,7 @@ from core.rotor.finding import decibels
 from core.rotor.ripples import Ripples, ripples
 from core.rotor.running_point import RunningPoint, errors, running_point, slip_course
 from core.rotor.sidebands import Lines, fit_lines
+from core.rotor.swing_findings import EccentricityFinding
 
 LEAST_SLIP_SHARE, MOST_SLIP_SHARE = 0.5, 2.0
 """Where the lines are looked for: at so many times the model's slip, for the rotor may be warm."""
@@ -35,68 +36,6 @@ FALSE_ALARM = 1e-4
 """Chance that noise alone passes for a line."""
 NINE_IN_TEN, NORMAL_95 = 1.2816, 1.96
 """Quantiles of the normal distribution."""
-
-
-@dataclass(frozen=True, slots=True)
-class EccentricityFinding:
-    """What a record tells of the air gap; figures are None where it cannot tell them.
-
-    Parameters
-    ----------
-    permeance_ripple : float or None
-        Amplitude of the relative ripple of the gap's permeance, once a turn.
-    standard_deviation : float or None
-        Its standard deviation: noise, and the parameters of the model.
-    detection_limit : float or None
-        Ripple that nine of ten such records show.
-    lower_sideband_dB, upper_sideband_dB : float or None
-        Current at f - f_r and f + f_r as measured, over the fundamental [dB].
-    load_torque : float or None
-        Torque of the load that swings once a turn, its amplitude over rated torque.
-    load_torque_deviation : float or None
-        Its standard deviation, over rated torque.
-    rotation_frequency_hz : float or None
-        Frequency f_r at which the lines stand [Hz].
-    reasons : tuple of str
-        What limits the figures, in words.
-    """
-
-    permeance_ripple: float | None = None
-    standard_deviation: float | None = None
-    detection_limit: float | None = None
-    lower_sideband_dB: float | None = None
-    upper_sideband_dB: float | None = None
-    load_torque: float | None = None
-    load_torque_deviation: float | None = None
-    rotation_frequency_hz: float | None = None
-    reasons: tuple[str, ...] = ()
-
-    @classmethod
-    def untold(cls, reason: str) -> "EccentricityFinding":
-        """Return the finding of a record that tells nothing of the gap.
-
-        Parameters
-        ----------
-        reason : str
-            Why, in words.
-
-        Returns
-        -------
-        EccentricityFinding
-            The finding.
-        """
-        return cls(reasons=(reason,))
-
-    def as_dict(self) -> dict[str, object]:
-        """Return the part `eccentricity` of the document that `mcc diagnose --json` prints.
-
-        Returns
-        -------
-        dict of str to object
-            The figures by name.
-        """
-        figures = {name: getattr(self, name) for name in self.__dataclass_fields__}
-        return figures | {"reasons": list(self.reasons)}
 
 
 def examine_eccentricity(baseband: Baseband, motor: Motor) -> EccentricityFinding:

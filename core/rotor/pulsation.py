@@ -7,7 +7,6 @@ the air gap, where a wrong inertia does no harm; its meaning for the load follow
 with the inertia of the motor's file.
 """
 
-from dataclasses import dataclass
 from math import log, pi, sqrt
 
 import numpy as np
@@ -19,6 +18,7 @@ from core.rotor.baseband import Baseband
 from core.rotor.ripples import ripples
 from core.rotor.running_point import RunningPoint, running_point
 from core.rotor.sidebands import fit_lines
+from core.rotor.swing_findings import PulsationFinding
 
 FEWEST_TURNS = 4.0
 """Least cycles of a swing over the record: what is slower is a load that changes."""
@@ -30,59 +30,6 @@ AROUND_A_TURN = 0.05
 """The same about once a turn, over it, to either side."""
 FINER = 4
 """Fineness of the search over the resolution of the record."""
-
-
-@dataclass(frozen=True, slots=True)
-class PulsationFinding:
-    """The strongest swing of the load's torque; figures are None where a record cannot tell them.
-
-    Parameters
-    ----------
-    load_torque : float or None
-        Its amplitude over rated torque.
-    noise : float or None
-        What noise makes of it, rms, over rated torque.
-    frequency_hz : float or None
-        Its frequency [Hz].
-    reasons : tuple of str
-        What limits the figures, in words.
-    """
-
-    load_torque: float | None = None
-    noise: float | None = None
-    frequency_hz: float | None = None
-    reasons: tuple[str, ...] = ()
-
-    @classmethod
-    def untold(cls, reason: str) -> "PulsationFinding":
-        """Return the finding of a record that tells nothing of swings.
-
-        Parameters
-        ----------
-        reason : str
-            Why, in words.
-
-        Returns
-        -------
-        PulsationFinding
-            The finding.
-        """
-        return cls(reasons=(reason,))
-
-    def as_dict(self) -> dict[str, object]:
-        """Return the part `pulsation` of the document that `mcc diagnose --json` prints.
-
-        Returns
-        -------
-        dict of str to object
-            The figures by name.
-        """
-        return {
-            "load_torque": self.load_torque,
-            "noise": self.noise,
-            "frequency_hz": self.frequency_hz,
-            "reasons": list(self.reasons),
-        }
 
 
 def examine_pulsation(baseband: Baseband, motor: Motor, *, even_rotor: bool) -> PulsationFinding:

@@ -1,8 +1,14 @@
 """What a recording shows of rotor and supply as text for people, the same in commands and on pages."""
 
+from math import sqrt
+
 from core.quantity_text import with_unit
 from core.rotor.finding import RotorFinding, RotorState
+from core.rotor.swing_findings import EVEN_GAP, STEADY_LOAD, EccentricityFinding, PulsationFinding
 from core.supply.figures import SupplyFigures
+
+NOISE_RMS = 4.0
+"""Noise alone passes so many times its rms in one of ten thousand records of a thousand frequencies."""
 
 STATES = {
     RotorState.HEALTHY: "healthy",
@@ -31,6 +37,39 @@ def sideband_words(finding: RotorFinding) -> str | None:
     return (
         f"{lower_dB:.1f} dB below, {upper_dB:.1f} dB above the supply's line, at a slip of {100 * slip:.2f} %"
     )
+
+
+def gap_words(finding: EccentricityFinding) -> str | None:
+    """Return by how much the air gap ripples; None of what a sound motor or noise would show."""
+    ripple, deviation, limit = finding.permeance_ripple, finding.standard_deviation, finding.detection_limit
+    if ripple is None or deviation is None or limit is None:
+        return None
+    told_from = max(limit, EVEN_GAP)
+    if ripple <= told_from:
+        return None
+    level = f"{100 * ripple:.2f} % (+-{196 * deviation:.2f} %)"
+    return f"permeance ripples by {level} once a turn; {100 * told_from:.2f} % would be told"
+
+
+def swing_words(eccentricity: EccentricityFinding, pulsation: PulsationFinding) -> list[str]:
+    """Return by how much the load's torque swings once a turn, and elsewhere.
+
+    Nothing is said of what a steady load or noise would show. What swings at twice the slip the rotor tells.
+    """
+    turn, deviation = eccentricity.load_torque, eccentricity.load_torque_deviation
+    found = (
+        (turn, None if deviation is None else sqrt(2.0) * deviation, eccentricity.rotation_frequency_hz),
+        (pulsation.load_torque, pulsation.noise, pulsation.frequency_hz),
+    )
+    words = []
+    for (swing, noise, hertz), where in zip(found, (", once a turn", ""), strict=True):
+        if swing is None or noise is None or hertz is None:
+            continue
+        limit = max(NOISE_RMS * noise, STEADY_LOAD)
+        if swing > limit:
+            told = f"torque swings by {100 * swing:.2f} % of the rated one at {hertz:.2f} Hz{where}"
+            words.append(f"{told}; {100 * limit:.2f} % would be told")
+    return words
 
 
 def supply_words(figures: SupplyFigures) -> list[str]:

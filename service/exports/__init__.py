@@ -1,1 +1,1 @@
-"""What plants take elsewhere: trends, recordings, measurements, alarms as CSV, Excel and Parquet."""
+"""What plants take elsewhere: trends, recordings, starts, measurements, alarms as CSV, Excel and Parquet."""

@@ -79,6 +79,7 @@ TABLE: Table[StartEntry] = Table(
         ),
         _figure("acceleration_s", "s", "time of the run-up"),
         _figure("peak_current_A", "A", "greatest rms of the line currents over one cycle"),
+        _figure("mean_current_A", "A", "rms current over the acceleration time"),
         _figure("crest_current_A", "A", "greatest instantaneous current"),
         _figure("running_current_A", "A", "rms current once the motor runs"),
         _figure("lowest_voltage_V", "V", "least rms voltage over one cycle, line to line"),

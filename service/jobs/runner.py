@@ -341,6 +341,8 @@ class JobRunner:
                 supply,
                 length,
                 answer,
+                eccentricity,
+                pulsation,
             ):
                 now_ns, left_out = time.time_ns(), None
                 if claimed.is_joined:  # the recordings it is made of tell the condition
@@ -367,6 +369,8 @@ class JobRunner:
                         supply=supply,
                         length=length,
                         classification=answer,
+                        eccentricity=eccentricity,
+                        pulsation=pulsation,
                     )
                 except UnstorableDiagnosisError as error:
                     self._retry(claimed, f"the diagnosis cannot be stored: {error}")

@@ -8,6 +8,7 @@ from core.condition.observation import Observation
 from core.diagnosis.verdict import Diagnosis
 from core.machines.parameters import Motor
 from core.rotor.finding import RotorFinding
+from core.rotor.swing_findings import EccentricityFinding, PulsationFinding
 from core.starts.examined import ExaminedStart
 from core.supply.figures import SupplyFigures
 from service.recording_store.recording import Source
@@ -43,6 +44,7 @@ class Diagnosed:
     length: that of the record.
     start: what a start shows; None of other records, and where nothing can be measured.  rotor, supply: what
     the record shows of them; None where it shows nothing.  classification: which causes are likely.
+    eccentricity, pulsation: what it shows of the air gap and of a load that swings.
     """
 
     diagnosis: Diagnosis
@@ -55,6 +57,8 @@ class Diagnosed:
     supply: SupplyFigures | None = None
     length: RecordLength | None = None
     classification: Classification | None = None
+    eccentricity: EccentricityFinding | None = None
+    pulsation: PulsationFinding | None = None
 
 
 @dataclass(frozen=True, slots=True)

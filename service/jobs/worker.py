@@ -68,6 +68,8 @@ def diagnose_recording(task: DiagnosisTask) -> Outcome:
         examined.supply,
         _length(recording),
         classify_record(examined, task.motor),
+        examined.eccentricity,
+        examined.pulsation,
     )
 
 

@@ -100,4 +100,5 @@ def undiagnosable() -> Diagnosis:
 
 def stored_document(diagnosis: Diagnosis) -> dict[str, object]:
     """What is stored of a diagnosis whose record shows nothing beside."""
-    return {**diagnosis.as_dict(), "rotor": None, "supply": None, "classification": None}
+    beside = ("rotor", "supply", "classification", "eccentricity", "pulsation")
+    return {**diagnosis.as_dict(), **dict.fromkeys(beside)}

@@ -77,5 +77,7 @@ def add_recording(
         observation=outcome.observation,
         rotor=outcome.rotor,
         supply=outcome.supply,
+        eccentricity=outcome.eccentricity,
+        pulsation=outcome.pulsation,
     )
     return added.id

@@ -6,6 +6,7 @@ from dataclasses import replace
 from core.classification.classification import Classification
 from core.diagnosis.verdict import Diagnosis
 from core.rotor.finding import RotorFinding, RotorState
+from core.rotor.swing_findings import EccentricityFinding, PulsationFinding
 from core.supply.figures import SupplyFigures
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
@@ -53,6 +54,19 @@ SHORT_RECORD = RotorFinding(
     reasons=("the record is too short for this slip",),
 )
 
+ECCENTRIC_ROTOR = EccentricityFinding(
+    permeance_ripple=0.0525,
+    standard_deviation=0.002,
+    detection_limit=0.0075,
+    lower_sideband_dB=-41.0,
+    upper_sideband_dB=-43.5,
+    load_torque=0.001,
+    load_torque_deviation=0.002,
+    rotation_frequency_hz=24.25,
+)
+
+SWINGING_LOAD = PulsationFinding(load_torque=0.0625, noise=0.001, frequency_hz=4.125)
+
 SUPPLY = SupplyFigures(
     frequency_hz=50.01,
     line_voltages_V=(401.0, 399.5, 396.25),
@@ -90,6 +104,8 @@ class ExaminedRecordings:
         left_out: str | None = None,
         classification: Classification | None = None,
         at_ns: int | None = None,
+        eccentricity: EccentricityFinding | None = None,
+        pulsation: PulsationFinding | None = None,
     ) -> str:
         """Add a recording with what it shows; return its id. at_ns: of that time, not of the next second."""
         self._number += 1
@@ -97,7 +113,14 @@ class ExaminedRecordings:
         stored = self._store.store({f"R{self._number}.CFF": f"{motor} {self._number}".encode()})
         added = self.repository.add_recording(stored, motor=motor, now_ns=now_ns)
         self.diagnose(
-            rotor, supply, now_ns, diagnosis=diagnosis, left_out=left_out, classification=classification
+            rotor,
+            supply,
+            now_ns,
+            diagnosis=diagnosis,
+            left_out=left_out,
+            classification=classification,
+            eccentricity=eccentricity,
+            pulsation=pulsation,
         )
         return added.recording.id
 
@@ -140,6 +163,8 @@ class ExaminedRecordings:
         diagnosis: Diagnosis | None = None,
         left_out: str | None = None,
         classification: Classification | None = None,
+        eccentricity: EccentricityFinding | None = None,
+        pulsation: PulsationFinding | None = None,
     ) -> None:
         """Have the next recording that waits diagnosed."""
         claimed = self.repository.claim_job(now_ns=recorded_ns + 1000 * SECOND_NS, runner=RUNNER)
@@ -154,4 +179,6 @@ class ExaminedRecordings:
             rotor=rotor,
             supply=supply,
             classification=classification,
+            eccentricity=eccentricity,
+            pulsation=pulsation,
         )

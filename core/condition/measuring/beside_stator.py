@@ -6,11 +6,12 @@ from core.machines.parameters import Motor
 from core.operation import Operation
 from core.recordings import Recording, RecordingError
 from core.rotor.baseband import Baseband, baseband_of
-from core.rotor.eccentricity import EccentricityFinding, examine_eccentricity
+from core.rotor.eccentricity import examine_eccentricity
 from core.rotor.examining import examine_rotor
 from core.rotor.finding import RotorFinding, RotorState
-from core.rotor.pulsation import PulsationFinding, examine_pulsation
+from core.rotor.pulsation import examine_pulsation
 from core.rotor.running_point import without_delay
+from core.rotor.swing_findings import EccentricityFinding, PulsationFinding
 from core.supply.figures import SupplyFigures
 from core.supply.measuring import measure_supply
 

@@ -20,9 +20,8 @@ from core.diagnosis.stator import diagnose_accepted
 from core.diagnosis.verdict import Diagnosis
 from core.machines.parameters import Motor
 from core.recordings import Channel, Quantity, Recording
-from core.rotor.eccentricity import EccentricityFinding
 from core.rotor.finding import RotorFinding
-from core.rotor.pulsation import PulsationFinding
+from core.rotor.swing_findings import EccentricityFinding, PulsationFinding
 from core.supply.figures import SupplyFigures
 
 PHASE_PER_SPACE_VECTOR = sqrt(2.0 / 3.0)

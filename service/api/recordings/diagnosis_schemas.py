@@ -11,7 +11,12 @@ from core.diagnosis.verdict import Verdict
 from core.operation import Operation
 from service.api.classification.schemas import Classification
 from service.api.document import Document, Listed, RequestDocument
-from service.api.rotor_and_supply.schemas import RotorFinding, SupplyFigures
+from service.api.rotor_and_supply.schemas import (
+    EccentricityFinding,
+    PulsationFinding,
+    RotorFinding,
+    SupplyFigures,
+)
 from service.api.times import Time
 from service.storage.states import JobState
 
@@ -79,7 +84,8 @@ class Diagnosis(Document):
     parameters. ..._scatter95: from the record's own scatter alone. speed_rpm: of the shaft, from the fit.
     detection_limit: nine of ten such recordings show a fault of that mu_f. currents_only: the voltages are
     assumed. operation: what the motor does in the recording. rotor, supply: what it shows of them.
-    classification: which causes are likely.
+    classification: which causes are likely. eccentricity, pulsation: what it shows of the air gap, and of a
+    load that swings.
     Diagnoses of earlier versions lack some: of those that knew only the scatter, ..._ci95 is null.
     """
 
@@ -109,6 +115,8 @@ class Diagnosis(Document):
     rotor: RotorFinding | None = None
     supply: SupplyFigures | None = None
     classification: Classification | None = None
+    eccentricity: EccentricityFinding | None = None
+    pulsation: PulsationFinding | None = None
 
     @property
     def rotor_slip(self) -> float | None:

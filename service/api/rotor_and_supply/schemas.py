@@ -41,6 +41,39 @@ class RotorTrendPoint(RotorFinding):
     recording_id: str
 
 
+class EccentricityFinding(Document):
+    """What a recording shows of the air gap; figures are null where it cannot tell them.
+
+    permeance_ripple: of the gap's permeance, once a turn, over its mean, with its standard_deviation.
+    detection_limit: ripple that nine of ten such recordings show. lower_sideband_dB, upper_sideband_dB:
+    currents at f - f_r and f + f_r as measured, over the fundamental. load_torque: torque of the load that
+    swings once a turn, over the rated one, with load_torque_deviation. rotation_frequency_hz: f_r.
+    """
+
+    permeance_ripple: float | None
+    standard_deviation: float | None
+    detection_limit: float | None
+    lower_sideband_dB: float | None
+    upper_sideband_dB: float | None
+    load_torque: float | None
+    load_torque_deviation: float | None
+    rotation_frequency_hz: float | None
+    reasons: Listed[str]
+
+
+class PulsationFinding(Document):
+    """The strongest swing of the load's torque; figures are null where a recording cannot tell them.
+
+    load_torque: its amplitude over the rated torque. noise: what noise makes of it, rms. What swings once a
+    turn is told by the eccentricity, and at twice the slip by the rotor.
+    """
+
+    load_torque: float | None
+    noise: float | None
+    frequency_hz: float | None
+    reasons: Listed[str]
+
+
 class RotorLoadBin(Document):
     """The records of one tenth of the rated load, 0 to 11, with the median severity of its first ones."""
 

@@ -22,7 +22,13 @@ from core.recordings import RecordingError
 from service.cli.output import WRONG_USE, CommandError, failing_clearly, print_document, results
 from service.cli.recordings.files import read_recording, with_advice
 from service.client.classification import answer_rows
-from service.client.rotor_and_supply import rotor_words, sideband_words, supply_words
+from service.client.rotor_and_supply import (
+    gap_words,
+    rotor_words,
+    sideband_words,
+    supply_words,
+    swing_words,
+)
 from service.client.tables import FittedTable
 from service.client.verdicts import OPERATIONS, detection, interval, level, load, verdict_text
 
@@ -156,6 +162,11 @@ def _add_what_is_beside(table: FittedTable, examined: Examined) -> None:
         table.add_row("sidebands", Text(sidebands))
     for reason in rotor.reasons:
         table.add_row("rotor because", Text(reason))
+    gap = gap_words(examined.eccentricity)
+    if gap is not None:
+        table.add_row("air gap", Text(gap))
+    for words in swing_words(examined.eccentricity, examined.pulsation):
+        table.add_row("load", Text(words))
     if examined.supply is not None:
         for words in supply_words(examined.supply):
             table.add_row("supply", Text(words))

@@ -3,9 +3,8 @@
 import pytest
 
 from core.classification.swings import pulsation_block
-from core.rotor.eccentricity import EccentricityFinding
 from core.rotor.finding import LOAD_OSCILLATION, RotorFinding, RotorState, decibels
-from core.rotor.pulsation import PulsationFinding
+from core.rotor.swing_findings import EccentricityFinding, PulsationFinding
 
 NO_GAP = EccentricityFinding.untold("a record too short")
 QUIET = PulsationFinding(load_torque=0.001, noise=0.0002, frequency_hz=6.0)

@@ -9,18 +9,19 @@ from typing import Any
 import numpy as np
 import pytest
 
+from core.classification.causes import Cause
 from core.classification.record import classify_record
 from core.condition.measuring.observing import Examined
 from core.machines.motor_file.writer import write_motor
 from core.machines.parameters import ParametersSource
 from core.quality.finding import QualityFinding
 from core.recordings import comtrade
-from core.rotor.eccentricity import EccentricityFinding
-from core.rotor.pulsation import PulsationFinding
+from core.rotor.swing_findings import EccentricityFinding, PulsationFinding
 from service.cli import main
 from service.cli.output import results
 from service.cli.recordings.diagnose import _table
-from testing.machines.motors import REFERENCE
+from testing.machines.cause_records import CauseCase
+from testing.machines.motors import MEDIUM, REFERENCE
 from testing.machines.phase_circuits import Fault, recording, running
 from testing.service.plants import undiagnosable
 from testing.service.rotor_and_supply import SHORT_RECORD
@@ -103,6 +104,32 @@ def test_two_recordings_are_no_baseline(
     words = ["--baseline", paths[1], "--baseline", paths[2], "--json"]
     assert main(["diagnose", paths[0], *words]) == 2
     assert "at least 3 healthy recordings, found 2" in json.loads(capsys.readouterr().out)["error"]["message"]
+
+
+@pytest.mark.parametrize(
+    ("cause", "line"),
+    [(Cause.ECCENTRICITY, "air gap permeance ripples by 6"), (Cause.PULSATION, "load torque swings by ")],
+)
+def test_air_gap_and_load_are_told_where_they_stand_out(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], cause: Cause, line: str
+) -> None:
+    case = CauseCase(MEDIUM, frozenset({cause}), 0.7, 42)
+    write_motor(tmp_path / "motor.toml", case.known())
+    record = case.record()
+    channels = tuple(
+        replace(channel, full_scale=2.0 * float(np.abs(x).max()))
+        for channel, x in zip(record.channels, record.samples, strict=True)
+    )
+    path = comtrade.write(tmp_path / "ILL.CFG", replace(record, channels=channels))
+    assert main(["diagnose", str(path)]) == 0
+    shown = " ".join(capsys.readouterr().out.translate({0x2502: " "}).split())
+    assert line in shown
+    assert main(["diagnose", str(path), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["eccentricity"]["permeance_ripple"] is not None
+    assert found["pulsation"]["load_torque"] is not None
+    both = ("air gap permeance", "load torque swings")
+    assert [one in shown for one in both] == [one in line for one in both], shown
 
 
 @pytest.mark.parametrize("fault", [None, Fault(0.06, 1)])

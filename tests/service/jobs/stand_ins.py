@@ -11,7 +11,7 @@ from service.jobs import Diagnosed, DiagnosisTask, Outcome, Rejected
 from service.jobs.worker_process import follow_service
 from service.recording_store.recording import LocalFile
 from testing.service.plants import NOW_NS, SECOND_NS, fault
-from testing.service.rotor_and_supply import BROKEN_ROTOR, SUPPLY
+from testing.service.rotor_and_supply import BROKEN_ROTOR, ECCENTRIC_ROTOR, SUPPLY, SWINGING_LOAD
 from testing.service.starts import START
 from testing.waiting import wait_until
 
@@ -80,7 +80,14 @@ def act_as_told(task: DiagnosisTask) -> Outcome:
     if told in RESULTS:
         return Diagnosed(RESULTS[told], NOW_NS)
     if told == "broken bars":
-        return Diagnosed(fault(), NOW_NS, rotor=BROKEN_ROTOR, supply=SUPPLY)
+        return Diagnosed(
+            fault(),
+            NOW_NS,
+            rotor=BROKEN_ROTOR,
+            supply=SUPPLY,
+            eccentricity=ECCENTRIC_ROTOR,
+            pulsation=SWINGING_LOAD,
+        )
     if told == "hot start":
         stress = StartStress(350.0, None, 0.95, None, "motor file", None)
         return Diagnosed(fault(), NOW_NS, start=ExaminedStart(START, stress=stress))

@@ -20,6 +20,7 @@ from service.recording_store.recording import LocalFile
 from service.storage import Repository, connect
 from service.storage.records import RemoteRecord
 from service.storage.states import AlarmKind, JobState, RecordingRequestState, RecordingState
+from testing.service.rotor_and_supply import ECCENTRIC_ROTOR, SWINGING_LOAD
 from testing.waiting import wait_until
 from tests.service.jobs.running import LIMITS, add, ended, running
 from tests.service.jobs.stand_ins import (
@@ -74,6 +75,10 @@ def test_every_recording_comes_to_its_end_whatever_the_workers_do(
     alarms = {one.kind: one for one in repository.open_alarms(motor="PUMP-A1", limit=10).items}
     assert set(alarms) == {AlarmKind.ROTOR_WATCH, AlarmKind.HARD_STARTS}
     assert alarms[AlarmKind.HARD_STARTS].recording_id == ids["hot start"]
+    stored = repository.current_diagnosis(ids["broken bars"])
+    assert stored is not None
+    assert stored.document["eccentricity"] == ECCENTRIC_ROTOR.as_dict()
+    assert stored.document["pulsation"] == SWINGING_LOAD.as_dict()
 
 
 def test_whatever_a_result_holds_its_job_alone_fails(

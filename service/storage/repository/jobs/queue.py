@@ -13,6 +13,7 @@ from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
 from core.diagnosis.verdict import Diagnosis, Verdict, not_finite
 from core.operation import AT_REST, EXPECTED
 from core.rotor.finding import RotorFinding
+from core.rotor.swing_findings import EccentricityFinding, PulsationFinding
 from core.starts.examined import ExaminedStart
 from core.supply.figures import SupplyFigures
 from service.audit.actions import AuditAction
@@ -48,6 +49,8 @@ from service.storage.repository.sessions import Order, Sessions, found, only, pa
 from service.storage.states import JobPriority, JobState, RecordingSource, RecordingState
 from service.storage.texts import storable
 from service.timing.backoff import Backoff
+
+_Part = RotorFinding | SupplyFigures | Classification | EccentricityFinding | PulsationFinding
 
 MOST_DOCUMENT_BYTES = 256 * 1024
 """A diagnosis takes some 10 kB. A larger document says nothing that anybody could read."""
@@ -176,6 +179,8 @@ class JobRows(Sessions):
         supply: SupplyFigures | None = None,
         length: RecordLength | None = None,
         classification: Classification | None = None,
+        eccentricity: EccentricityFinding | None = None,
+        pulsation: PulsationFinding | None = None,
     ) -> bool:
         """Keep the result: diagnosis, observation, job, recording and requests in one transaction.
 
@@ -184,7 +189,7 @@ class JobRows(Sessions):
         nor in trends, for people.  operation_remark: why the motor's parameters cannot be estimated from this
         start.  start: what a start shows; None of other records.  rotor, supply: what the record shows of
         them; None where it shows nothing.  length: that of the record.  classification: which causes are
-        likely.
+        likely.  eccentricity, pulsation: what it shows of the air gap and of a load that swings.
         Returns False, and keeps nothing, where the job is not the runner's any more.
         Raises NotFoundError, UnstorableDiagnosisError.
         """
@@ -196,7 +201,9 @@ class JobRows(Sessions):
             if not is_held(row, runner):
                 return False
             recording = found(session, RecordingRow, row.recording_id, "recording", lock=True)
-            document = _document(diagnosis, rotor, supply, classification)
+            parts: dict[str, _Part | None] = {"rotor": rotor, "supply": supply}
+            parts |= {"eccentricity": eccentricity, "pulsation": pulsation}
+            document = _document(diagnosis, parts | {"classification": classification})
             earlier = session.connection().execute(_NOT_CURRENT, {"of_recording": recording.id})
             is_first = earlier.rowcount == 0  # nothing is kept of the recording that this one replaces
             session.add(_diagnosis_row(row, recording.motor, diagnosis, document, recorded_ns, now_ns))
@@ -329,21 +336,13 @@ def _diagnosis_row(
     )
 
 
-def _document(
-    diagnosis: Diagnosis,
-    rotor: RotorFinding | None,
-    supply: SupplyFigures | None,
-    classification: Classification | None,
-) -> Mapping[str, object]:
+def _document(diagnosis: Diagnosis, parts: Mapping[str, _Part | None]) -> Mapping[str, object]:
     """Return all that a record shows as a document that every database and reader can hold.
 
     Raises UnstorableDiagnosisError.
     """
-    document = diagnosis.as_dict() | {
-        "rotor": None if rotor is None else rotor.as_dict(),
-        "supply": None if supply is None else supply.as_dict(),
-        "classification": None if classification is None else classification.as_dict(),
-    }
+    shown = {name: None if part is None else part.as_dict() for name, part in parts.items()}
+    document = diagnosis.as_dict() | shown
     way = not_finite(document)
     if way is not None:
         raise UnstorableDiagnosisError(f"{way} is not JSON compliant: it is no finite number")

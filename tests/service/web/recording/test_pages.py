@@ -15,6 +15,12 @@ from testing.machines.motors import REFERENCE
 from testing.machines.phase_circuits import Fault
 from testing.service.plants import NOW_NS, SECOND_NS
 from testing.service.real_recordings import add_recording, running_record
+from testing.service.rotor_and_supply import (
+    BROKEN_ROTOR,
+    ECCENTRIC_ROTOR,
+    SWINGING_LOAD,
+    ExaminedRecordings,
+)
 from testing.service.small_record import CFG, DAT
 from tests.service.api.serving import serving
 from tests.service.web.pages import HOSTILE, addresses, page, words
@@ -66,6 +72,28 @@ def test_rotor_and_supply_are_told_beside_the_stator(
     stored = context.repository.current_diagnosis(recordings[0])
     assert stored is not None
     assert stored.document["rotor"] == first.finding.as_dict()
+    shown = looking.get(f"/api/v1/recordings/{recordings[0]}").json()["diagnosis"]
+    for part in ("eccentricity", "pulsation"):
+        assert shown[part] == stored.document[part]
+        assert shown[part]["load_torque"] is not None or shown[part]["reasons"]
+
+
+def test_air_gap_and_load_are_told_beside_the_rotor(looking: httpx.Client, context: ApiContext) -> None:
+    recording = ExaminedRecordings(context.repository, context.store).add(
+        BROKEN_ROTOR, eccentricity=ECCENTRIC_ROTOR, pulsation=SWINGING_LOAD
+    )
+    document = page(looking.get(f"/recordings/{recording}"))
+    assert words(document, "section[aria-labelledby=rotor] p") == [
+        "Fault, asymmetry -29.0 dB [-31.0..-27.5]; -52.0 dB would be seen."
+    ]
+    told = zip(
+        words(document, "section[aria-labelledby=rotor] dt"),
+        words(document, "section[aria-labelledby=rotor] dd"),
+        strict=True,
+    )
+    facts = dict(told)
+    assert facts["Air gap"].startswith("permeance ripples by 5.25 %")
+    assert facts["Load"].startswith("torque swings by 6.25 % of the rated one at 4.12 Hz")
 
 
 def test_waveforms_phasors_spectrum_and_states_are_there_without_a_script(
