@@ -98,11 +98,12 @@ def test_no_renewal_waits_for_long(
         housekeeping.average_and_delete(NOW_NS + 2 * DAY_NS + HOUR_NS, HOUR_NS)
     assert repository.measurements("MOTOR-000", 0, limit=1).items == ()
     assert repository.measurements("MOTOR-000", 60, limit=1).items != ()
-    # PostgreSQL drops the partitions of old days as a whole, and is done before many renewals come.
-    assert len(waits.each_s) > (10 if engine.dialect.name == "sqlite" else 2)
     assert waits.refused == 0
     assert max(waits.each_s) < 0.7, waits.text()
-    assert quantiles(waits.each_s, n=10)[-1] < 0.2, waits.text()
+    # PostgreSQL drops the partitions of old days as a whole, and is done before many renewals come.
+    if engine.dialect.name == "sqlite":
+        assert len(waits.each_s) > 10
+        assert quantiles(waits.each_s, n=10)[-1] < 0.2, waits.text()
 
 
 def test_a_batch_takes_about_the_time_it_may() -> None:
