@@ -99,7 +99,7 @@ def test_no_renewal_waits_for_long(
     assert repository.measurements("MOTOR-000", 0, limit=1).items == ()
     assert repository.measurements("MOTOR-000", 60, limit=1).items != ()
     assert waits.refused == 0
-    assert max(waits.each_s) < 0.7, waits.text()
+    assert max(waits.each_s, default=0.0) < 0.7, waits.text()
     # PostgreSQL drops the partitions of old days as a whole, and is done before many renewals come.
     if engine.dialect.name == "sqlite":
         assert len(waits.each_s) > 10
