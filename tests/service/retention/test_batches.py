@@ -102,7 +102,7 @@ def test_no_renewal_waits_for_long(
     assert max(waits.each_s, default=0.0) < 0.7, waits.text()
     # PostgreSQL drops the partitions of old days as a whole, and is done before many renewals come.
     if engine.dialect.name == "sqlite":
-        assert len(waits.each_s) > 10
+        assert len(waits.each_s) > 4
         assert quantiles(waits.each_s, n=10)[-1] < 0.2, waits.text()
 
 
