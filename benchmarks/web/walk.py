@@ -15,7 +15,15 @@ from tempfile import TemporaryDirectory
 from benchmarks.reporting import table
 from benchmarks.web.pictures import take_pictures
 from testing.web.chromium import INSTALL, chromium_path, running_browser
-from testing.web.demo_walk import PAGE, Walk, find_what_to_do, follow, on_a_phone, running_demo
+from testing.web.demo_walk import (
+    PAGE,
+    Walk,
+    find_what_to_do,
+    follow,
+    look_at_every_page,
+    on_a_phone,
+    running_demo,
+)
 from testing.web.site import DESKTOP, PHONE
 
 
@@ -32,12 +40,16 @@ def main() -> None:
         running_browser(path) as browser,
         running_demo(Path(data)) as demo,
     ):
+        printed_s = time.monotonic()
         print(f"the first line after {time.monotonic() - begun_s:.1f} s: {demo.first_line}", flush=True)
         desktop = Walk()
         page = follow(browser, demo.first_line.removeprefix(PAGE), DESKTOP)
         desktop.step("the link of the first line opens the first page, logged in", clicks=1)
-        find_what_to_do(page, desktop)
+        name = find_what_to_do(page, desktop)
         _print("Desktop", desktop)
+        opened = look_at_every_page(page, name)
+        seconds = time.monotonic() - printed_s
+        print(f"each of {len(opened)} pages shows something {seconds:.0f} s after the first line")
         link = demo.next_link()  # the demo prints it when the month is over
         if arguments.pictures is not None:  # before the phone's walk takes notice of the alarm that they show
             with on_a_phone(browser, page) as small:

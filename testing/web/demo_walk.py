@@ -134,3 +134,33 @@ def find_what_to_do(page: WatchedPage, walk: Walk) -> str:
     walk.step("the alarm is acknowledged", clicks=1)
     page.require_quiet()
     return name
+
+
+STANDING = "PUMP-B3"
+LISTS = ("/alarms", "/relays", "/recordings", "/plant", "/reports")
+FOR_PEOPLE = ("/notifications", "/people", "/audit", "/account")
+OF_ONE = {"/alarms": "/alarms/", "/relays": "/relays/", "/recordings": "/recordings/"}
+"""Lists, and how addresses of what they list begin."""
+
+
+def look_at_every_page(page: WatchedPage, motor: str) -> list[str]:
+    """Open each page once a motor is known to stand still; return those that were opened.
+
+    motor: one that has a fault.  Raises AssertionError where a page has nothing to show.
+    """
+    page.goto("/")
+    standing = page.page.locator("table.fleet tbody tr", has_text=STANDING)
+    standing.get_by_text("not running").first.wait_for(timeout=LIMIT_MS)
+    opened = ["/", f"/motors/{motor}", f"/motors/{motor}/load", *LISTS, *FOR_PEOPLE]
+    for path in opened:
+        page.goto(path)
+        words = page.page.locator("main").inner_text()
+        assert words.count("\n") > 4, f"{path} has nothing to show: {words}"
+        if path in OF_ONE:
+            link = page.page.locator(f"main a[href^='{OF_ONE[path]}']").first
+            page.goto(link.get_attribute("href") or "")
+            assert page.page.locator("main h1").inner_text()
+    page.goto("/starts")
+    page.page.locator("main").get_by_role("link", name="PUMP-A1").first.wait_for(timeout=LIMIT_MS)
+    page.require_quiet()
+    return [*opened, *OF_ONE.values(), "/starts"]
