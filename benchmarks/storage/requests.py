@@ -36,6 +36,7 @@ UNTIMED = {
     "/api/v1/exports/alarms": "writes all that is chosen into a file",
     "/api/v1/exports/measurements": "writes all that is chosen into a file",
     "/api/v1/exports/recordings": "writes all that is chosen into a file",
+    "/api/v1/exports/starts": "writes all that is chosen into a file",
     "/api/v1/exports/trend": "writes all that is chosen into a file",
     "/api/v1/notifications": "reads messages, which are deleted after a time",
     "/api/v1/notifications/{notification_id}": "reads messages, which are deleted after a time",
