@@ -16,6 +16,8 @@ from service.storage.states import StartSource
 
 LOOKED_AT: Final = 10 * REFERENCE_STARTS
 """Starts among which the first whole ones are looked for."""
+MOST_EVENTS: Final = 1000
+"""Latest events of a motor among which one that begins the reference anew is looked for."""
 RENEWING: Final = (EventKind.REWOUND, EventKind.REFERENCE_RESTARTED, EventKind.RECORDER_CHANGED)
 """After these a start is compared with the first ones that come then."""
 
@@ -40,17 +42,18 @@ class StartReferenceRows(Sessions):
 
 def reference_of(session: Session, motor: str) -> StartReference:
     """Return what the starts of a motor are compared with."""
-    renewing = (
-        select(ConditionEventRow)
-        .where(
-            ConditionEventRow.motor == motor,
-            ConditionEventRow.kind.in_(RENEWING),
-            ConditionEventRow.withdrawn_ns.is_(None),
-        )
+    # No index has the kinds of events. The limit keeps a motor with many notes from holding up others.
+    latest = (
+        select(ConditionEventRow.id, ConditionEventRow.kind, ConditionEventRow.withdrawn_ns)
+        .where(ConditionEventRow.motor == motor)
         .order_by(ConditionEventRow.time_ns.desc(), ConditionEventRow.id.desc())
-        .limit(1)
+        .limit(MOST_EVENTS)
     )
-    row = session.scalar(renewing)
+    renewing = (
+        one.id for one in session.execute(latest) if one.kind in RENEWING and one.withdrawn_ns is None
+    )
+    event_id = next(renewing, None)
+    row = None if event_id is None else session.get(ConditionEventRow, event_id)
     renewed = None if row is None else record_of(ConditionEvent, row)
     from_ns = 0 if renewed is None else renewed.time_ns
     first = first_whole(session, motor, from_ns=from_ns, source=StartSource.RECORDING) or first_whole(
