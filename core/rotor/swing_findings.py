@@ -1,6 +1,7 @@
 """What a record tells of the air gap, and of a load that swings; what finds it is beside this module."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, fields
+from typing import Self
 
 EVEN_GAP = 0.004
 """Ripple of the permeance of a sound motor, a tenth of static times a twentieth of dynamic eccentricity."""
@@ -9,7 +10,48 @@ STEADY_LOAD = 0.004
 
 
 @dataclass(frozen=True, slots=True)
-class EccentricityFinding:
+class SwingFinding:
+    """What findings of swings have in common.
+
+    Parameters
+    ----------
+    reasons : tuple of str
+        What limits the figures, in words.
+    """
+
+    reasons: tuple[str, ...] = field(default=(), kw_only=True)
+
+    @classmethod
+    def untold(cls, reason: str) -> Self:
+        """Return the finding of a record that tells nothing.
+
+        Parameters
+        ----------
+        reason : str
+            Why, in words.
+
+        Returns
+        -------
+        SwingFinding
+            The finding, without figures.
+        """
+        return cls(reasons=(reason,))
+
+    def as_dict(self) -> dict[str, object]:
+        """Return the part of the document that `mcc diagnose --json` prints.
+
+        Returns
+        -------
+        dict of str to object
+            The figures by name, and the reasons after them.
+        """
+        figures = {one.name: getattr(self, one.name) for one in fields(self)}
+        del figures["reasons"]
+        return figures | {"reasons": list(self.reasons)}
+
+
+@dataclass(frozen=True, slots=True)
+class EccentricityFinding(SwingFinding):
     """What a record tells of the air gap; figures are None where it cannot tell them.
 
     Parameters
@@ -40,38 +82,10 @@ class EccentricityFinding:
     load_torque: float | None = None
     load_torque_deviation: float | None = None
     rotation_frequency_hz: float | None = None
-    reasons: tuple[str, ...] = ()
-
-    @classmethod
-    def untold(cls, reason: str) -> "EccentricityFinding":
-        """Return the finding of a record that tells nothing of the gap.
-
-        Parameters
-        ----------
-        reason : str
-            Why, in words.
-
-        Returns
-        -------
-        EccentricityFinding
-            The finding.
-        """
-        return cls(reasons=(reason,))
-
-    def as_dict(self) -> dict[str, object]:
-        """Return the part `eccentricity` of the document that `mcc diagnose --json` prints.
-
-        Returns
-        -------
-        dict of str to object
-            The figures by name.
-        """
-        figures = {name: getattr(self, name) for name in self.__dataclass_fields__}
-        return figures | {"reasons": list(self.reasons)}
 
 
 @dataclass(frozen=True, slots=True)
-class PulsationFinding:
+class PulsationFinding(SwingFinding):
     """The strongest swing of the load's torque; figures are None where a record cannot tell them.
 
     Parameters
@@ -89,35 +103,3 @@ class PulsationFinding:
     load_torque: float | None = None
     noise: float | None = None
     frequency_hz: float | None = None
-    reasons: tuple[str, ...] = ()
-
-    @classmethod
-    def untold(cls, reason: str) -> "PulsationFinding":
-        """Return the finding of a record that tells nothing of swings.
-
-        Parameters
-        ----------
-        reason : str
-            Why, in words.
-
-        Returns
-        -------
-        PulsationFinding
-            The finding.
-        """
-        return cls(reasons=(reason,))
-
-    def as_dict(self) -> dict[str, object]:
-        """Return the part `pulsation` of the document that `mcc diagnose --json` prints.
-
-        Returns
-        -------
-        dict of str to object
-            The figures by name.
-        """
-        return {
-            "load_torque": self.load_torque,
-            "noise": self.noise,
-            "frequency_hz": self.frequency_hz,
-            "reasons": list(self.reasons),
-        }
