@@ -17,13 +17,12 @@ from sqlalchemy.exc import SQLAlchemyError
 from structlog.typing import FilteringBoundLogger
 
 from core.machines.parameters import Motor
-from service.condition.record_times import ImpossibleTimeError, require_possible_time
 from service.condition.work import ConditionTask, ConditionWork
 from service.jobs.answers import Answers
+from service.jobs.keeping import keep_diagnosed
 from service.jobs.limits import JobLimits
 from service.jobs.listening import JobListener, usual_poll_period_s
-from service.jobs.relay_time import TriggeredRecord, note_relay_time
-from service.jobs.task import Diagnosed, DiagnosisTask, Outcome, Rejected, Task
+from service.jobs.task import DiagnosisTask, Outcome, Rejected, Task
 from service.jobs.worker_pool import WorkerPool
 from service.jobs.worker_process import follow_service
 from service.jobs.workers import NoWorkersError, Workers
@@ -326,79 +325,15 @@ class JobRunner:
     def _keep(self, claimed: ClaimedJob, outcome: Outcome) -> None:
         """Write back what a worker returned. Raises SQLAlchemyError."""
         job = claimed.job
-        match outcome:
-            case Rejected(reason):
-                self._repository.reject_recording(job.id, reason, now_ns=time.time_ns(), runner=self._id)
-                log.warning("recording rejected", recording=job.recording_id, reason=storable(reason))
-            case Diagnosed(
-                diagnosis,
-                recorded_ns,
-                observation,
-                remark,
-                has_time_code,
-                start,
-                rotor,
-                supply,
-                length,
-                answer,
-                eccentricity,
-                pulsation,
-            ):
-                now_ns, left_out = time.time_ns(), None
-                if claimed.is_joined:  # the recordings it is made of tell the condition
-                    observation = None
-                try:
-                    require_possible_time(recorded_ns, now_ns)
-                except ImpossibleTimeError as error:
-                    observation, start, left_out = None, None, str(error)
-                    log.warning(
-                        "record left out of the condition", recording=job.recording_id, reason=left_out
-                    )
-                try:
-                    kept = self._repository.finish_job(
-                        job.id,
-                        diagnosis,
-                        recorded_ns=recorded_ns,
-                        now_ns=now_ns,
-                        runner=self._id,
-                        observation=observation,
-                        left_out=left_out,
-                        operation_remark=remark,
-                        start=start,
-                        rotor=rotor,
-                        supply=supply,
-                        length=length,
-                        classification=answer,
-                        eccentricity=eccentricity,
-                        pulsation=pulsation,
-                    )
-                except UnstorableDiagnosisError as error:
-                    self._retry(claimed, f"the diagnosis cannot be stored: {error}")
-                    return
-                if not kept:
-                    log.warning("a diagnosis came after the lease was lost", recording=job.recording_id)
-                    return
-                if rotor is not None:
-                    self._repository.settle_rotor_alarm(claimed.motor, now_ns=now_ns)
-                if start is not None or claimed.is_repetition:
-                    self._repository.settle_start_alarms_of(claimed.motor, now_ns=now_ns)
-                is_first = not claimed.is_repetition  # a repetition tells of the clock as it was
-                if is_first and claimed.ied is not None and claimed.triggered_ns is not None:
-                    record = TriggeredRecord(
-                        claimed.ied,
-                        self._time_zones.get(claimed.motor),
-                        recorded_ns,
-                        claimed.triggered_ns,
-                        has_time_code,
-                    )
-                    note_relay_time(self._repository, record, now_ns)
-                log.info(
-                    "recording diagnosed",
-                    recording=job.recording_id,
-                    motor=claimed.motor,
-                    verdict=str(diagnosis.verdict),
-                    operation=None if diagnosis.operation is None else str(diagnosis.operation),
-                )
+        if isinstance(outcome, Rejected):
+            self._repository.reject_recording(job.id, outcome.reason, now_ns=time.time_ns(), runner=self._id)
+            log.warning("recording rejected", recording=job.recording_id, reason=storable(outcome.reason))
+            return
+        zone = self._time_zones.get(claimed.motor)
+        try:
+            keep_diagnosed(self._repository, claimed, outcome, runner=self._id, time_zone=zone)
+        except UnstorableDiagnosisError as error:
+            self._retry(claimed, f"the diagnosis cannot be stored: {error}")
 
     def _retry(self, claimed: ClaimedJob, error: str, *, max_attempts: int | None = None) -> None:
         """Queue a job again, or give it up after its last attempt. Raises SQLAlchemyError.
