@@ -6,6 +6,7 @@ acknowledged it, it is the same row.
 
 import uuid
 from collections.abc import Collection
+from typing import Final
 
 from sqlalchemy import ColumnElement, delete, select
 from sqlalchemy.orm import InstrumentedAttribute, Session
@@ -18,7 +19,7 @@ from service.storage.models.alarms import is_open
 from service.storage.records import Alarm, AlarmPlace, AlarmSpec
 from service.storage.repository.alarms.changes import change, forget_changes, locked, urgency
 from service.storage.repository.alarms.standing_counts import count_cleared, count_raised
-from service.storage.repository.alarms.suppression import suppress, why_suppressed
+from service.storage.repository.alarms.suppression import suppress, suppress_by_design, why_suppressed
 from service.storage.repository.sessions import Sessions, found, record_of
 from service.storage.states import AlarmEvent, AlarmKind, AlarmState
 from service.storage.texts import storable
@@ -28,6 +29,10 @@ MOST_CLEARED = 1000
 
 Older ones are deleted, with their history.
 """
+
+
+LEFT_THE_PLANT: Final = "the motor left the plant"
+"""Why alarms of a motor that is in service no more are over."""
 
 
 class AlarmCauseRows(Sessions):
@@ -160,6 +165,19 @@ def clear(session: Session, now_ns: int, *which: ColumnElement[bool], why: str |
         change(session, row, AlarmEvent.CLEARED, now_ns=now_ns, comment=why)
     count_cleared(session, [(row.ied, row.kind) for row in rows if row.ied is not None])
     return len(rows)
+
+
+def end_of_motor(session: Session, motor: str, rows: Collection[AlarmRow], why: str, *, now_ns: int) -> None:
+    """Clear those of a motor's locked alarms that stand, as their cause is over.
+
+    The plant's design may suppress one that calls for somebody first.
+    """
+    for row in rows:
+        suppress_by_design(session, row, now_ns=now_ns)
+    standing = [row.id for row in rows if row.cleared_ns is None]
+    if standing:
+        clear(session, now_ns, AlarmRow.id.in_(standing), why=why)
+        forget_cleared(session, AlarmRow.motor == motor)
 
 
 def supersede(session: Session, row: AlarmRow, successor: AlarmRow, *, now_ns: int) -> None:

@@ -11,9 +11,8 @@ from service.alarms.kinds import AlarmKind
 from service.storage.models import AlarmRow, MotorRow
 from service.storage.models.alarms import is_open
 from service.storage.records import AlarmPlace, AlarmSpec
-from service.storage.repository.alarms.causes import clear, forget_cleared, locked_place, raised_at
+from service.storage.repository.alarms.causes import LEFT_THE_PLANT, end_of_motor, locked_place, raised_at
 from service.storage.repository.alarms.changes import locked
-from service.storage.repository.alarms.suppression import suppress_by_design
 
 SUBJECT: Final = "parameters"
 OVER: Final = "the parameters are as in the first records again, or follow from another reference"
@@ -37,10 +36,5 @@ def settle_drift_alarm(
         return
     about = (AlarmRow.motor == motor.name, AlarmRow.kind == AlarmKind.PARAMETER_DRIFT)
     rows = locked(session, *about, is_open())
-    for row in rows:
-        suppress_by_design(session, row, now_ns=now_ns)
-    standing = [row.id for row in rows if row.cleared_ns is None]
-    if standing:
-        why = OVER if motor.in_service else "the motor left the plant"
-        clear(session, now_ns, AlarmRow.id.in_(standing), why=why)
-        forget_cleared(session, AlarmRow.motor == motor.name)
+    why = OVER if motor.in_service else LEFT_THE_PLANT
+    end_of_motor(session, motor.name, rows, why, now_ns=now_ns)

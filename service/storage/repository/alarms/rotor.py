@@ -11,9 +11,15 @@ from service.alarms.rotor_rules import KINDS, rotor_advice
 from service.storage.models import AlarmRow, MotorRow, RotorFindingRow
 from service.storage.models.alarms import is_open
 from service.storage.records import AlarmPlace, AlarmSpec
-from service.storage.repository.alarms.causes import clear, forget_cleared, locked_place, raised_at, supersede
+from service.storage.repository.alarms.causes import (
+    LEFT_THE_PLANT,
+    end_of_motor,
+    forget_cleared,
+    locked_place,
+    raised_at,
+    supersede,
+)
 from service.storage.repository.alarms.changes import locked
-from service.storage.repository.alarms.suppression import suppress_by_design
 from service.storage.repository.history.rotor import latest_findings
 from service.storage.repository.history.rotor_course import course_condition, latest_condition
 from service.storage.repository.sessions import Sessions, found
@@ -40,13 +46,8 @@ class RotorAlarmRows(Sessions):
             if in_service and condition.state in KINDS:
                 _tell(session, place, rows, condition, now_ns)
                 return
-            for row in rows:
-                suppress_by_design(session, row, now_ns=now_ns)
-            standing = [row.id for row in rows if row.cleared_ns is None]
-            if standing:
-                why = "; ".join(condition.reasons) if in_service else "the motor left the plant"
-                clear(session, now_ns, AlarmRow.id.in_(standing), why=why)
-                forget_cleared(session, AlarmRow.motor == motor)
+            why = "; ".join(condition.reasons) if in_service else LEFT_THE_PLANT
+            end_of_motor(session, motor, rows, why, now_ns=now_ns)
 
     def settle_rotor_alarms(self, *, now_ns: int) -> None:
         """Make the alarms of all rotors say what the records say, as a service does when it starts.

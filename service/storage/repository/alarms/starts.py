@@ -13,9 +13,8 @@ from service.alarms.start_rules import LATEST, StartSeen, ToldChange, hard_start
 from service.storage.models import AlarmRow, MotorRow, StartRow
 from service.storage.models.alarms import is_open
 from service.storage.records import AlarmPlace, AlarmSpec, StartEntry, StartReference
-from service.storage.repository.alarms.causes import clear, forget_cleared, locked_place, raised_at
+from service.storage.repository.alarms.causes import LEFT_THE_PLANT, end_of_motor, locked_place, raised_at
 from service.storage.repository.alarms.changes import locked
-from service.storage.repository.alarms.suppression import suppress_by_design
 from service.storage.repository.history.start_reference import latest_starts, reference_of
 from service.storage.repository.sessions import Sessions, found
 
@@ -68,13 +67,8 @@ def settle_start_alarms(session: Session, motor: MotorRow, *, now_ns: int) -> No
             raised_at(session, place, spec, now_ns=now_ns)
             continue
         rows = locked(session, AlarmRow.motor == motor.name, AlarmRow.kind == kind, is_open())
-        for row in rows:
-            suppress_by_design(session, row, now_ns=now_ns)
-        standing = [row.id for row in rows if row.cleared_ns is None]
-        if standing:
-            why = over if motor.in_service else "the motor left the plant"
-            clear(session, now_ns, AlarmRow.id.in_(standing), why=why)
-            forget_cleared(session, AlarmRow.motor == motor.name)
+        why = over if motor.in_service else LEFT_THE_PLANT
+        end_of_motor(session, motor.name, rows, why, now_ns=now_ns)
 
 
 def _has_alarm(motor: str) -> Select[tuple[bool]]:
