@@ -7,7 +7,6 @@ import sys
 import time
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -29,14 +28,13 @@ from service.storage.records import JobRunnerEntry
 from service.storage.states import JobState
 from testing.service.processes import (
     MOTOR_NAMES,
-    descendants,
-    is_alive,
     running_service,
     service_environment,
     switched_off_plant,
 )
 from testing.service.real_recordings import running_record
-from testing.waiting import eventually, wait_until
+from testing.waiting import wait_until
+from tests.service.application.working import workers
 
 RECORDINGS = 18
 LEASE_S = "6"
@@ -45,38 +43,19 @@ LEASE_S = "6"
 START_LIMIT_S = 120.0
 
 
-def environment_of(directory: Path, url: str, recordings: Path, **others: str) -> Mapping[str, str]:
-    settings = {
+def settings_of(directory: Path, url: str, recordings: Path) -> dict[str, str]:
+    directory.mkdir(exist_ok=True)
+    return {
         "MCC_SCD": str(switched_off_plant(directory)),
         "MCC_DATABASE_URL": url,
         "MCC_RECORDINGS_DIRECTORY": str(recordings),
         "MCC_WORKERS": "1",
         "MCC_LEASE_S": LEASE_S,
-        **others,
     }
-    return service_environment(directory / "data", settings)
 
 
-@contextmanager
-def workers(directory: Path, url: str, recordings: Path) -> "Iterator[subprocess.Popen[bytes]]":
-    """A host of workers, with its own data directory."""
-    directory.mkdir()
-    environment = environment_of(directory, url, recordings)
-    with (
-        (directory / "log").open("wb") as log,
-        subprocess.Popen(
-            [sys.executable, "-m", "service.cli", "work"], env=environment, stderr=log
-        ) as process,
-    ):
-        below: list[int] = []
-        try:
-            yield process
-        finally:
-            below = descendants(process.pid)
-            process.send_signal(signal.SIGCONT)
-            process.kill()
-            process.wait()
-            assert eventually(lambda: not any(is_alive(one) for one in below), 20)
+def environment_of(directory: Path, url: str, recordings: Path) -> Mapping[str, str]:
+    return service_environment(directory / "data", settings_of(directory, url, recordings))
 
 
 def refusal_of(environment: Mapping[str, str]) -> str:
@@ -126,10 +105,9 @@ def test_a_service_and_two_hosts_of_workers_diagnose_each_recording_once(
     (tmp_path / "service").mkdir()
     with running_service(tmp_path / "service", switched_off_plant(tmp_path), **settings) as service:
         recordings = service.data / "recordings"
-        with (
-            workers(tmp_path / "first", postgresql_url, recordings) as first,
-            workers(tmp_path / "second", postgresql_url, recordings) as second,
-        ):
+        places = [tmp_path / name for name in ("first", "second")]
+        one, other = (workers(place, settings_of(place, postgresql_url, recordings)) for place in places)
+        with one as first, other as second:
             wait_until(lambda: len(repository.job_runners()) == 3, within_s=START_LIMIT_S)
             add_recordings(repository, FolderStore(recordings, "tests"))
             wait_until(lambda: stopped_at_work(repository, first.pid), within_s=START_LIMIT_S)

@@ -5,11 +5,7 @@ Its parts are tested by themselves: the relay's (collector/records/test_store_aw
 """
 
 import io
-import subprocess
-import sys
 import zipfile
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -19,38 +15,15 @@ from service.configuration.recordings_url import BucketPlace
 from service.storage import Repository, connect
 from service.storage.states import RecordingState
 from testing.service.processes import (
-    descendants,
-    is_alive,
     running_service,
-    service_environment,
     simulated_plant,
 )
 from testing.service.s3_server import Fault, S3Server
-from testing.waiting import eventually, wait_until
+from testing.waiting import wait_until
+from tests.service.application.working import workers
 
 START_LIMIT_S = 120.0
 RELAY, MOTOR = "A1_SEL710", "PUMP-A1"
-
-
-@contextmanager
-def workers(directory: Path, settings: Mapping[str, str]) -> "Iterator[subprocess.Popen[bytes]]":
-    """A host of workers, with a data directory of its own."""
-    directory.mkdir()
-    environment = service_environment(directory / "data", dict(settings))
-    with (
-        (directory / "log").open("wb") as log,
-        subprocess.Popen(
-            [sys.executable, "-m", "service.cli", "work"], env=environment, stderr=log
-        ) as process,
-    ):
-        below: list[int] = []
-        try:
-            yield process
-        finally:
-            below = descendants(process.pid)
-            process.kill()
-            process.wait()
-            assert eventually(lambda: not any(is_alive(one) for one in below), 20)
 
 
 @pytest.mark.campaign
