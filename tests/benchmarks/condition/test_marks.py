@@ -106,7 +106,6 @@ def test_a_run_of_one_section_leaves_the_others(tmp_path: Path) -> None:
     assert "No figure is asked for." in text
 
 
-@pytest.mark.skipif(not PAGE.with_suffix(".json").exists(), reason="nothing was measured yet")
 def test_the_page_says_what_was_measured() -> None:
     text = page_text(SECTIONS_OF_THE_PAGE, read_measured(PAGE))
     assert PAGE.read_text(encoding="utf-8") == text, (
