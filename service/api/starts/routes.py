@@ -11,8 +11,8 @@ from service.api.context import Context
 from service.api.document import Name
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
-from service.api.starts.comparison import within_hour
 from service.api.starts.schemas import StartDetails, StartSummary
+from service.api.starts.within_hour import within_hour
 from service.storage.records import StartEntry, StartReference
 
 router = APIRouter(prefix="/motors/{name}/starts", tags=["motors"])

@@ -65,46 +65,25 @@ def measurements(
     _export("measurements", url, motors, query, wanted, output, overwrite, as_json)
 
 
-@export.command()
-def recordings(
-    motors: Motors = None,
-    url: Url = DEFAULT_URL,
-    wanted: Format = None,
-    output: Output = None,
-    *,
-    overwrite: Overwrite = False,
-    as_json: Json = False,
-) -> None:
-    """Write the recordings with their verdicts, latest first."""
-    _export("recordings", url, motors, {}, wanted, output, overwrite, as_json)
+def _add_whole(table: str, told: str) -> None:
+    """Add the command for a table that is chosen by its motors alone. told: its help."""
+
+    @export.command(table, help=told)
+    def write(
+        motors: Motors = None,
+        url: Url = DEFAULT_URL,
+        wanted: Format = None,
+        output: Output = None,
+        *,
+        overwrite: Overwrite = False,
+        as_json: Json = False,
+    ) -> None:
+        _export(table, url, motors, {}, wanted, output, overwrite, as_json)
 
 
-@export.command()
-def starts(
-    motors: Motors = None,
-    url: Url = DEFAULT_URL,
-    wanted: Format = None,
-    output: Output = None,
-    *,
-    overwrite: Overwrite = False,
-    as_json: Json = False,
-) -> None:
-    """Write the starts with their figures, latest first."""
-    _export("starts", url, motors, {}, wanted, output, overwrite, as_json)
-
-
-@export.command()
-def alarms(
-    motors: Motors = None,
-    url: Url = DEFAULT_URL,
-    wanted: Format = None,
-    output: Output = None,
-    *,
-    overwrite: Overwrite = False,
-    as_json: Json = False,
-) -> None:
-    """Write the alarms, latest first."""
-    _export("alarms", url, motors, {}, wanted, output, overwrite, as_json)
+_add_whole("recordings", "Write the recordings with their verdicts, latest first.")
+_add_whole("starts", "Write the starts with their figures, latest first.")
+_add_whole("alarms", "Write the alarms, latest first.")
 
 
 def _export(

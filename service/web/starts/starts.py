@@ -9,7 +9,7 @@ from markupsafe import Markup
 from core.starts.compared import StartChanges
 from service.alarms.start_rules import LATEST
 from service.api.pages import decode, encode
-from service.api.starts.comparison import within_hour
+from service.api.starts.within_hour import within_hour
 from service.pictures.looks import PAGE, Look
 from service.pictures.starts import StartLine, starts_picture
 from service.storage import Repository
