@@ -14,6 +14,9 @@ RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"
 ABORTED = "net::ERR_ABORTED"
 """A stream that ends with its page, or a request that another one takes the place of."""
 
+UNANSWERED = ("htmx:afterRequest", "htmx:sendError", "htmx:sendAbort")
+"""What htmx says of a request without an answer, which is looked at itself: a reload ends those under way."""
+
 LOAD_FAILED = "Failed to load resource"
 """The browser's word for an answer of 400 or more, which is looked at itself."""
 
@@ -89,7 +92,11 @@ class WatchedPage:
         accepted = re.match(r"Response Status Error Code (\d+)", message.text)  # of htmx
         if accepted and int(accepted[1]) in self.accepted:
             return
-        if message.type == "error" and LOAD_FAILED not in message.text:
+        if (
+            message.type == "error"
+            and LOAD_FAILED not in message.text
+            and not message.text.startswith(UNANSWERED)
+        ):
             self.problems.append(f"console: {message.text}")
 
     def _watch(self, request: Request) -> None:
