@@ -6,6 +6,7 @@ what cannot wait: the renewal of their leases.
 
 import time
 from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from queue import SimpleQueue
 from typing import Generic, TypeVar
 
@@ -13,7 +14,7 @@ import structlog
 from sqlalchemy.exc import DBAPIError
 
 from service.storage import Repository
-from service.storage.records import LinkNote, Sample
+from service.storage.records import LinkNote, RelayFindings, Sample
 from service.timing.database_silence import does_not_answer
 from service.timing.periodic_worker import PeriodicWorker
 
@@ -49,6 +50,9 @@ class BatchWriter:
         """
         self._samples = _Batch("measured values", repository.add_samples)
         self._notes = _Batch("notes of links", repository.note_links)
+        self._findings: _Batch[RelayFindings] = _Batch(
+            "what was found at relays", lambda findings: repository.note_findings(*findings)
+        )
         self._worker = PeriodicWorker("the batch writer", self._write, period_s=period_s, once_more=True)
 
     def add_sample(self, sample: Sample) -> None:
@@ -58,6 +62,10 @@ class BatchWriter:
     def add_note(self, note: LinkNote) -> None:
         """Write what went over a link that is up, and stays up."""
         self._notes.add(note)
+
+    def add_findings(self, findings: RelayFindings) -> None:
+        """Write what was found at a relay."""
+        self._findings.add(findings)
 
     def start(self) -> None:
         """Start the thread."""
@@ -72,10 +80,9 @@ class BatchWriter:
         return self._worker.problem()
 
     def _write(self) -> None:
-        try:
-            self._samples.write()
-        finally:  # what goes wrong with items of one kind holds up none of the other
-            self._notes.write()
+        with ExitStack() as writes:  # what goes wrong with items of one kind holds up none of the others
+            for batch in (self._notes, self._findings, self._samples):
+                writes.callback(batch.write)
 
 
 class _Batch(Generic[Item]):

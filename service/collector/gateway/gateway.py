@@ -26,6 +26,9 @@ log = structlog.get_logger(__name__)
 REQUEST_PERIOD_S = 0.2
 """Between two queries for the recordings somebody has requested."""
 
+LONGEST_STARTING_S = 0.5
+"""Of sessions, before the dispatcher does its other work."""
+
 RENEWALS_PER_LEASE = 10
 """How often leases are renewed in the time they last."""
 
@@ -86,6 +89,8 @@ class Gateway:
         self._sessions: dict[str, _SessionThread] = {}
         self._ending: dict[str, _SessionThread] = {}
         self._quarantined: dict[str, UnansweredRequests] = {}
+        self._unvisited: set[str] = set()
+        """Relays of this gateway whose sessions are to be started."""
         self._batches = BatchWriter(repository)
         self._registered = False
         self._next_renewal_s = 0.0
@@ -111,20 +116,21 @@ class Gateway:
         return "; ".join(f"{name}: {text}" for name, text in problems.items() if text is not None) or None
 
     def _dispatch(self) -> None:
-        """Renew the leases when that is due; wake the sessions of relays that are asked for a recording.
+        """Renew the leases when that is due; start sessions; wake those that are asked for a recording.
 
         Raises SQLAlchemyError.
         """
         if boot_time_s() >= self._next_renewal_s:
             self._renew_leases()
             self._next_renewal_s = boot_time_s() + self._settings.lease_s / RENEWALS_PER_LEASE
+        self._start_sessions()
         self._give_back_ended()
         for relay in self._repository.relays_with_requests():
             if relay in self._sessions:
                 self._sessions[relay].session.wake()
 
     def _renew_leases(self) -> None:
-        """Renew the leases; start and stop sessions as the fair share of this gateway changes.
+        """Renew the leases; stop sessions, and note which to start, as this gateway's fair share changes.
 
         Raises SQLAlchemyError.
         """
@@ -144,14 +150,14 @@ class Gateway:
         except LeaseLostError as error:
             log.warning("starting again", reason=str(error))
             self._registered = False
+            self._unvisited.clear()
             self._abandon_all()
             return
         self._watchdog.renewed(began_s)
         self._remove_ended()
         self._update_quarantined(share.held)
         busy = self._sessions.keys() | self._ending.keys() | self._quarantined.keys()
-        for relay in share.held - share.surplus - busy:
-            self._start_session(relay)
+        self._unvisited = set(share.held - share.surplus - busy)
         for relay in share.surplus & self._sessions.keys():
             self._sessions[relay].session.stop()
             self._ending[relay] = self._sessions.pop(relay)
@@ -195,6 +201,15 @@ class Gateway:
         )
         self._registered = True
 
+    def _start_sessions(self) -> None:
+        """Start sessions for a moment; the others are started in the next rounds.
+
+        With hundreds of relays, to start all of them takes longer than a lease lasts.
+        """
+        until_s = boot_time_s() + LONGEST_STARTING_S
+        while self._unvisited and boot_time_s() < until_s:
+            self._start_session(self._unvisited.pop())
+
     def _start_session(self, relay: str) -> None:
         """Start the session of a relay on a thread of its own."""
         motor = self._plant.motor_of(relay).motor
@@ -208,6 +223,7 @@ class Gateway:
             visit_marks=self._visit_marks,
             on_sample=self._batches.add_sample,
             on_note=self._batches.add_note,
+            on_findings=self._batches.add_findings,
             reported=motor,
         )
         thread = Thread(target=session.run, name=f"relay-{relay}", daemon=True)

@@ -5,7 +5,7 @@ connection.
 """
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict
 
 import structlog
@@ -27,7 +27,6 @@ from service.plant import (
     acquisition_from_scl,
     differences,
 )
-from service.storage import Repository
 from service.storage.records import RelayFindings
 from service.storage.states import AlarmKind
 
@@ -39,9 +38,15 @@ NOT_BROWSED = "the relay does not tell what it offers: its SCL is taken at its w
 class Discovery:
     """What is known of one relay. Used by that relay's session alone."""
 
-    def __init__(self, relay: Relay, repository: Repository, alarms: RelayAlarms) -> None:
+    def __init__(
+        self, relay: Relay, alarms: RelayAlarms, on_findings: Callable[[RelayFindings], None]
+    ) -> None:
+        """Know nothing of the relay yet.
+
+        on_findings: stores what is found, or sees to it.
+        """
         self._relay = relay
-        self._repository = repository
+        self._on_findings = on_findings
         self._alarms = alarms
         self._acquisition = acquisition_from_scl(relay)
         self._control_model: str | None = None
@@ -85,7 +90,7 @@ class Discovery:
     ) -> None:
         """Store what is used and what is ignored, if that has changed since it was stored.
 
-        Raises SQLAlchemyError; the next call then stores it.
+        Raises SQLAlchemyError where it is stored at once; the next call then stores it.
         """
         findings = RelayFindings(
             ied=self._relay.name,
@@ -96,7 +101,7 @@ class Discovery:
             ignored_in_all=ignored_in_all,
         )
         if findings != self._saved:
-            self._repository.note_findings(findings)
+            self._on_findings(findings)
             self._saved = findings
 
     def _acquisition_document(

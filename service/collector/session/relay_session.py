@@ -35,7 +35,7 @@ from service.configuration.settings import Settings
 from service.plant import Relay
 from service.recording_store.store import RecordingStore
 from service.storage import LeaseLostError, Repository
-from service.storage.records import LinkNote, Sample
+from service.storage.records import LinkNote, RelayFindings, Sample
 from service.timing.backoff import RestartDelay
 
 log = structlog.get_logger(__name__)
@@ -62,6 +62,7 @@ class RelaySession:
         visit_marks: VisitMarks | None = None,
         on_sample: Callable[[Sample], None] | None = None,
         on_note: Callable[[LinkNote], None] | None = None,
+        on_findings: Callable[[RelayFindings], None] | None = None,
         reported: Motor | None = None,
         policy: SessionPolicy = SESSION_POLICY,
     ) -> None:
@@ -71,6 +72,7 @@ class RelaySession:
         visit_marks: where a visit is marked, for whoever finds the process dead; None where nobody looks.
         on_sample: takes what the relay measures; None where nobody wants it.
         on_note: takes what goes over a link that stays up; None where it is written at once.
+        on_findings: takes what is found at the relay; None where it is written at once.
         reported: the motor that the relay's text reports tell of; None where nobody wants them.
         """
         self._relay = relay
@@ -83,7 +85,7 @@ class RelaySession:
         )
         self._link = Link(relay.name, repository, allowance, on_note=on_note, reminder_s=policy.reminder_s)
         alarms = RelayAlarms(relay.name, repository, most=policy.most_alarms)
-        self._discovery = Discovery(relay, repository, alarms)
+        self._discovery = Discovery(relay, alarms, on_findings or repository.note_findings)
         self._subscription = ReportSubscription(
             relay.name, repository, self._link, retry_s=policy.report_retry_s
         )

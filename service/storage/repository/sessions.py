@@ -1,13 +1,11 @@
 """Transactions, and the step from table rows to plain values."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import fields
-from threading import Lock
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from sqlalchemy import ColumnElement, Engine, Select, func, select, text, tuple_
-from sqlalchemy.exc import TimeoutError  # noqa: A004 - that of the database
 from sqlalchemy.orm import InstrumentedAttribute, Session
 
 from service.storage.engine import WRITES, busy_timeout_s_of
@@ -16,6 +14,7 @@ from service.storage.models import Base, IedRow, MotorRow
 from service.storage.records import Cursor, Page
 from service.storage.repository.counting_session import CountingSession
 from service.storage.repository.nearest_name import nearest_name
+from service.storage.repository.turns import Turns
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -40,7 +39,7 @@ class Sessions:
         self._reading = engine
         self._writing = engine.execution_options(**{WRITES: True})
         self._busy_timeout_s = busy_timeout_s_of(engine.get_execution_options())
-        self._turn = Lock() if engine.dialect.name == "sqlite" else None
+        self._turns = Turns(self._busy_timeout_s) if engine.dialect.name == "sqlite" else None
 
     def check(self) -> None:
         """Make one round trip to the database. Raises SQLAlchemyError when it does not answer."""
@@ -53,27 +52,22 @@ class Sessions:
             yield session
 
     @contextmanager
-    def _write(self) -> Iterator[Session]:
-        with self._own_turn(), CountingSession(self._writing) as session, session.begin():
+    def _write(self, *, ahead: bool = False) -> Iterator[Session]:
+        """Begin a transaction that writes.
+
+        ahead: before the other threads of this process that wait for their turn.
+        Raises sqlalchemy.exc.TimeoutError.
+        """
+        with self._own_turn(ahead=ahead), CountingSession(self._writing) as session, session.begin():
             yield session
 
-    @contextmanager
-    def _own_turn(self) -> Iterator[None]:
+    def _own_turn(self, *, ahead: bool) -> AbstractContextManager[None]:
         """Wait for this thread's turn to write, where the database is SQLite.
 
         SQLite has one writer, and who waits for it looks again now and then, whoever was there first. So
-        threads of a process take turns before: the next one goes on at once, and no renewal of a lease is
-        passed by forty others. Raises sqlalchemy.exc.TimeoutError.
+        threads of a process take turns before: the next one goes on at once.
         """
-        if self._turn is None:
-            yield
-            return
-        if not self._turn.acquire(timeout=self._busy_timeout_s):
-            raise TimeoutError(f"other threads have been writing for {self._busy_timeout_s:g} s")
-        try:
-            yield
-        finally:
-            self._turn.release()
+        return nullcontext() if self._turns is None else self._turns.one(ahead=ahead)
 
 
 def found(session: Session, row_type: type[Row], key: str, kind: str, *, lock: bool = False) -> Row:

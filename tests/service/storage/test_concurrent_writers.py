@@ -84,6 +84,37 @@ def test_a_waiting_writer_goes_on_as_soon_as_the_other_is_done(
 
 
 @ON_SQLITE
+def test_a_renewal_goes_ahead_of_the_threads_that_wait(database_url: str, repository: Repository) -> None:
+    """A gateway that has just connected 250 relays has as many threads with something to write."""
+    repository.sync_plant(two_motor_plant())
+    repository.register_gateway("gateway", host="host", process_id=1, now_ns=NOW_NS)
+    order: list[str] = []
+
+    def note() -> None:
+        repository.set_link_state("A1_SEL710", LinkState.UP, None, now_ns=NOW_NS)
+        order.append("note")
+
+    def renew() -> None:
+        repository.share_relays("gateway", ["A1_SEL710"], most=1, problem=None)
+        order.append("renewal")
+
+    with closing(sqlite3.connect(database_url.removeprefix("sqlite:///"), isolation_level=None)) as other:
+        other.execute("BEGIN IMMEDIATE")
+        writers = [Thread(target=note) for _ in range(40)]
+        for writer in writers:
+            writer.start()
+        renewal = Thread(target=renew)
+        renewal.start()
+        time.sleep(0.3)  # all of them wait by now
+        assert order == []
+        other.execute("ROLLBACK")
+        for thread in (*writers, renewal):
+            thread.join(30)
+    assert len(order) == 41
+    assert order.index("renewal") <= 2, order
+
+
+@ON_SQLITE
 def test_who_finds_nothing_to_do_waits_for_no_writer(database_url: str, repository: Repository) -> None:
     """Runner and gateways look all the time; nearly always there is neither a job nor a changed rotor."""
     repository.sync_plant(two_motor_plant())

@@ -61,7 +61,7 @@ class JobRunnerRows(Sessions):
 
         Raises RunnerEndedError where others declared the runner dead: it holds no job any more.
         """
-        with self._write() as session:
+        with self._write(ahead=True) as session:
             own = session.get(JobRunnerRow, runner, with_for_update={"key_share": True})
             if own is None:
                 raise RunnerEndedError(runner)

@@ -6,20 +6,24 @@ from service.storage.repository.sessions import Sessions, found, record_of
 
 
 class FindingsRows(Sessions):
-    def note_findings(self, findings: RelayFindings) -> None:
-        """Replace what was found at a relay before by these findings. Raises NotFoundError."""
+    def note_findings(self, *findings: RelayFindings) -> None:
+        """Replace what was found at each relay before by these findings; later ones replace earlier ones.
+
+        Raises NotFoundError.
+        """
         with self._write() as session:
-            found(session, IedRow, findings.ied, "relay")
-            session.merge(
-                RelayFindingsRow(
-                    ied=findings.ied,
-                    found_ns=findings.found_ns,
-                    acquisition=findings.acquisition,
-                    differences=list(findings.differences),
-                    ignored_files=list(findings.ignored_files),
-                    ignored_in_all=findings.ignored_in_all,
+            for each in findings:
+                found(session, IedRow, each.ied, "relay")
+                session.merge(
+                    RelayFindingsRow(
+                        ied=each.ied,
+                        found_ns=each.found_ns,
+                        acquisition=each.acquisition,
+                        differences=list(each.differences),
+                        ignored_files=list(each.ignored_files),
+                        ignored_in_all=each.ignored_in_all,
+                    )
                 )
-            )
 
     def relay_findings(self, relay: str) -> RelayFindings | None:
         """Return what was found at a relay; None before the first visit. Raises NotFoundError."""

@@ -35,12 +35,14 @@ class Share:
 
 
 class LeaseRows(Sessions):
+    """Leases are renewed in time, or lost: what is written here goes ahead of what else is."""
+
     def register_gateway(self, gateway: str, *, host: str, process_id: int, now_ns: int) -> None:
         """Register a gateway that starts and holds nothing.
 
         The caller knows that whatever had its id before is dead.
         """
-        with self._write() as session:
+        with self._write(ahead=True) as session:
             _end(session, gateway, now_ns)
             session.add(
                 GatewayRow(id=gateway, host=host, process_id=process_id, heartbeats=0, started_ns=now_ns)
@@ -52,7 +54,7 @@ class LeaseRows(Sessions):
         problem: what does not work in the gateway, for others to see; None while all does.
         Raises LeaseLostError where the gateway was declared dead: it holds nothing any more.
         """
-        with self._write() as session:
+        with self._write(ahead=True) as session:
             own = session.get(GatewayRow, gateway)
             if own is None:
                 raise LeaseLostError(gateway)
@@ -75,7 +77,7 @@ class LeaseRows(Sessions):
 
     def give_back_relays(self, gateway: str, relays: Collection[str]) -> None:
         """End the leases of relays that are not visited any more."""
-        with self._write() as session:
+        with self._write(ahead=True) as session:
             session.execute(delete(LeaseRow).where(LeaseRow.gateway == gateway, LeaseRow.ied.in_(relays)))
 
     def end_gateway(self, gateway: str, *, now_ns: int, heartbeats: int | None = None) -> bool:
@@ -83,7 +85,7 @@ class LeaseRows(Sessions):
 
         Returns False where there was nothing to end.
         """
-        with self._write() as session:
+        with self._write(ahead=True) as session:
             row = session.get(GatewayRow, gateway)
             if row is None or heartbeats not in (None, row.heartbeats):
                 return False

@@ -11,7 +11,7 @@ from structlog.testing import capture_logs
 from service.collector.gateway import batch_writer
 from service.collector.gateway.batch_writer import BatchWriter
 from service.storage import Repository, connect
-from service.storage.records import LinkNote, LinkTraffic, Sample
+from service.storage.records import LinkNote, LinkTraffic, RelayFindings, Sample
 from service.storage.states import LinkState
 from testing.service.plants import NOW_NS, SECOND_NS, two_motor_plant
 from testing.waiting import eventually
@@ -122,6 +122,18 @@ def test_beside_refused_items_all_others_are_written_once(repository: Repository
     times = [one.time_ns - NOW_NS for one in repository.measurements(MOTOR, 0, limit=100).items]
     assert times == [number for number in range(64) if number not in (5, 6, 40)]
     assert repository.link_figures(RELAY).reports == 2 * 63
+
+
+def test_the_latest_of_what_was_found_at_a_relay_stays(repository: Repository) -> None:
+    batches = BatchWriter(repository, period_s=0.05)
+    for number, relay in enumerate((RELAY, "NO-SUCH-RELAY", RELAY)):
+        batches.add_findings(RelayFindings(relay, NOW_NS + number, {"asked": True}, []))
+    batches.start()
+    assert eventually(lambda: "lost 1 items, the database refuses them" in (batches.problem() or ""))
+    batches.stop(10)
+    found = repository.relay_findings(RELAY)
+    assert found is not None
+    assert found.found_ns == NOW_NS + 2
 
 
 def test_what_is_dropped_is_told_with_its_number(

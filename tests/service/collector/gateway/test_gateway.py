@@ -6,11 +6,12 @@ import sqlite3
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, closing, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from threading import Event, Thread
+from typing import Any
 
 import pytest
 
@@ -20,7 +21,9 @@ from scl import Address
 from scl.model_text import model_text
 from service.api import ApiContext, create_app
 from service.application.parts import running
+from service.collector.gateway import gateway as gateway_module
 from service.collector.gateway.gateway import Gateway, GatewayIdentity
+from service.collector.session.relay_session import RelaySession
 from service.collector.session.visit_marks import BUSY
 from service.collector.supervision.gateway_processes import GatewayProcesses
 from service.collector.supervision.gateway_supervisor import GatewaySupervisor
@@ -120,7 +123,9 @@ def hall(tmp_path: Path) -> Iterator[Hall]:
 
 
 @contextmanager
-def gateway(hall: Hall, name: str, *, most: int = 100) -> Iterator[Gateway]:
+def gateway(
+    hall: Hall, name: str, *, most: int = 100, on_expiry: Callable[[], None] = lambda: None
+) -> Iterator[Gateway]:
     """A gateway on a thread; the block's end is its ordinary end."""
     settings = hall.settings.model_copy(update={"relays_per_gateway": most})
     made = Gateway(
@@ -129,7 +134,7 @@ def gateway(hall: Hall, name: str, *, most: int = 100) -> Iterator[Gateway]:
         Repository(connect(settings.database_url)),
         FolderStore(settings.recordings_directory),
         settings,
-        on_expiry=lambda: None,
+        on_expiry=on_expiry,
     )
     stop = Event()
     thread = Thread(target=made.run, args=(stop,))
@@ -153,6 +158,23 @@ def test_relays_are_shared_out_and_given_back_and_never_visited_by_two(hall: Hal
         assert hall.shares() == {}
         assert hall.links() == {LinkState.UNKNOWN}
     assert hall.most_visitors == 1
+
+
+def test_leases_are_renewed_while_many_sessions_are_started(
+    hall: Hall, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The start of 250 sessions took longer than the lease: each gateway of a thousand relays ended again."""
+
+    class SlowSession(RelaySession):
+        def __init__(self, *given: Any, **named: Any) -> None:
+            time.sleep(LEASE_S / 3)
+            super().__init__(*given, **named)
+
+    monkeypatch.setattr(gateway_module, "RelaySession", SlowSession)
+    expired: list[float] = []
+    with gateway(hall, "one", on_expiry=lambda: expired.append(time.monotonic())):
+        assert eventually(hall.all_visited, 10 * LEASE_S)
+    assert expired == []
 
 
 def test_a_gateway_writes_down_what_its_relays_measure(hall: Hall) -> None:
