@@ -141,11 +141,11 @@ class InterruptedRepository(Repository):
         self._happens: Callable[[], object] | None = happens
 
     @contextmanager
-    def _write(self) -> Iterator[Session]:
+    def _write(self, *, ahead: bool = False) -> Iterator[Session]:
         happens, self._happens = self._happens, None
         if happens is not None:
             happens()
-        with super()._write() as session:
+        with super()._write(ahead=ahead) as session:
             yield session
 
 
