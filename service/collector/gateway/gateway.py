@@ -89,8 +89,7 @@ class Gateway:
         self._sessions: dict[str, _SessionThread] = {}
         self._ending: dict[str, _SessionThread] = {}
         self._quarantined: dict[str, UnansweredRequests] = {}
-        self._unvisited: set[str] = set()
-        """Relays of this gateway whose sessions are to be started."""
+        self._to_start: set[str] = set()
         self._batches = BatchWriter(repository)
         self._registered = False
         self._next_renewal_s = 0.0
@@ -150,14 +149,14 @@ class Gateway:
         except LeaseLostError as error:
             log.warning("starting again", reason=str(error))
             self._registered = False
-            self._unvisited.clear()
+            self._to_start.clear()
             self._abandon_all()
             return
         self._watchdog.renewed(began_s)
         self._remove_ended()
         self._update_quarantined(share.held)
         busy = self._sessions.keys() | self._ending.keys() | self._quarantined.keys()
-        self._unvisited = set(share.held - share.surplus - busy)
+        self._to_start = set(share.held - share.surplus - busy)
         for relay in share.surplus & self._sessions.keys():
             self._sessions[relay].session.stop()
             self._ending[relay] = self._sessions.pop(relay)
@@ -207,8 +206,8 @@ class Gateway:
         With hundreds of relays, to start all of them takes longer than a lease lasts.
         """
         until_s = boot_time_s() + LONGEST_STARTING_S
-        while self._unvisited and boot_time_s() < until_s:
-            self._start_session(self._unvisited.pop())
+        while self._to_start and boot_time_s() < until_s:
+            self._start_session(self._to_start.pop())
 
     def _start_session(self, relay: str) -> None:
         """Start the session of a relay on a thread of its own."""
