@@ -24,6 +24,7 @@ from service.api.conditions import routes as conditions
 from service.api.context import ApiContext
 from service.api.exports import routes as exports
 from service.api.host_guard import HostGuard
+from service.api.integrations import routes as integrations
 from service.api.limits.arrivals import Arrivals
 from service.api.limits.body_limits import (
     MAX_REPORT_BYTES,
@@ -87,6 +88,7 @@ def create_app(
         tracking,
         classification,
         load,
+        integrations,
         baselines,
         starts,
         relay_reports,

@@ -1,8 +1,8 @@
 """What the routes stand on."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Annotated
+from typing import Annotated, Protocol
 from urllib.parse import quote
 
 from fastapi import Depends, Request
@@ -19,6 +19,19 @@ Problem = Callable[[], str | None]
 """A check that returns what keeps a part of the service from working; None when it works."""
 
 
+class Integration(Protocol):
+    """A gateway to another system of the plant. problem: what does not work in it; None while all does."""
+
+    @property
+    def kind(self) -> str: ...
+
+    @property
+    def process_id(self) -> int | None: ...
+
+    @property
+    def problem(self) -> str | None: ...
+
+
 def _nothing() -> None:
     """Do nothing, for an API without a job runner of its own."""
 
@@ -29,7 +42,7 @@ class ApiContext:
 
     uploads: those stored at a time, after they have arrived. passwords: looked at, each in 64 MiB.
     motors: of the plant's files, by name. time_zones: of relays' clocks that do not run in UTC, by motor.
-    compute: has somebody do what needs the numbers.
+    compute: has somebody do what needs the numbers. integrations: the gateways to other systems.
     waveforms_read: one at a time, because each may have much to read. waveforms_sent: to slow clients, too.
     exports: files of lists, which are made while they are sent. reports: each in a process of its own.
     """
@@ -42,6 +55,7 @@ class ApiContext:
     motors: Mapping[str, Motor] = field(default_factory=dict)
     time_zones: Mapping[str, str] = field(default_factory=dict)
     compute: Compute = compute_here
+    integrations: Callable[[], Sequence[Integration]] = tuple
     uploads: Admission = field(default_factory=lambda: Admission("uploads", 3, wait_s=10.0))
     passwords: Admission = field(default_factory=lambda: Admission("passwords", 2, wait_s=10.0))
     waveforms_read: Admission = field(default_factory=lambda: Admission("waveforms", 1, wait_s=10.0))

@@ -22,11 +22,11 @@ from service.application.diagnosing import job_runner
 from service.application.parts import Part, running
 from service.background.workers import background_workers
 from service.collector.supervision.gateway_processes import GatewayProcesses
-from service.collector.supervision.gateway_supervisor import RESTART_POLICY
 from service.condition.motor_data import document_of
 from service.configuration.problems import Problems
 from service.configuration.relay_access import clear_passwords
 from service.configuration.settings import Settings, SettingsError
+from service.gateways.supervision import PlantGateways
 from service.jobs import JobRunner
 from service.notifications.checking import channel_problems, report_problems, route_problems, warnings
 from service.notifications.work import NotificationWork
@@ -42,6 +42,7 @@ from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect, migrate
 from service.storage.answering import answering
 from service.storage.transaction_limits import limits_of
+from service.supervision.supervised_process import RESTART_POLICY
 from service.web.app import create_site, end_streams
 
 log = structlog.get_logger(__name__)
@@ -76,6 +77,7 @@ def _serve(settings: Settings, settings_file: Path | None, termination: Terminat
         store = _opened_store(settings)
         store.discard_incoming()
         jobs, parts = _parts(settings, settings_file, plant, repository, store, termination)
+        integrations = PlantGateways(settings)
         room: dict[str, Problem] = {
             "disk": partial(disk_problem, _written(settings, store)),
             "recordings": store.problem,
@@ -90,9 +92,11 @@ def _serve(settings: Settings, settings_file: Path | None, termination: Terminat
             motors={motor.name: motor.motor for motor in plant.motors},
             time_zones=plant.time_zones(),
             compute=jobs.compute,
+            integrations=integrations.status,
         )
         termination.step()
-        with running(parts.values()):
+        # They come up last, and are no part of what makes the service ready: nothing here waits for them.
+        with running([*parts.values(), integrations]):
             host, port = listener.getsockname()[:2]
             log.info("serving", host=host, port=port, tls=certificate is not None, motors=len(plant.motors))
             _answer(context, listener, termination, certificate)

@@ -6,6 +6,7 @@ from functools import lru_cache
 from core.condition.assessment import STALE_AFTER_NS
 from core.units import NANOSECONDS_PER_DAY
 from service.plant import Schedule
+from service.storage.records import ConditionEntry
 
 PAUSES = 2.5
 """Two records of a schedule may fail. A condition that misses more is stale."""
@@ -50,6 +51,16 @@ def stale_after_ns(schedule: str | None, stale_after_days: float | None = None) 
     if stale_after_days is not None:
         return round(stale_after_days * NANOSECONDS_PER_DAY)
     return STALE_AFTER_NS if schedule is None else round(PAUSES * _longest_pause_ns(schedule))
+
+
+def is_stale(entry: ConditionEntry, now_ns: int, oldest_ns: int) -> bool:
+    """Tell whether the latest record of a condition is older than `oldest_ns`, or there is none.
+
+    A motor that stands makes no record that counts: what was known of it when it stopped is not stale.
+    """
+    if entry.as_of_ns is None:
+        return True
+    return now_ns - max(entry.as_of_ns, entry.stood_ns or entry.as_of_ns) > oldest_ns
 
 
 @lru_cache(maxsize=1000)

@@ -20,6 +20,7 @@ from service.configuration.alarms import AlarmSettings
 from service.configuration.audit import AuditSettings
 from service.configuration.backup import BackupSettings
 from service.configuration.channels import CHANNEL_PATHS, MailChannel
+from service.configuration.gateways.settings import GatewaysSettings
 from service.configuration.notifications import NotificationSettings
 from service.configuration.problems import ENVIRONMENT, ConfigurationError, Problem, Problems
 from service.configuration.recordings_url import BucketPlace
@@ -32,6 +33,7 @@ from service.configuration.toml_lines import TomlLines
 MIB, GIB = 1024**2, 1024**3
 PATHS = ("data_directory", "recordings_directory", "scd", "motors", "tls_certificate", "tls_key")
 RELAY_PATHS = ("certificate", "key", "ca", "pinned", "password_file")
+GATEWAY_PATHS = ("certificate", "key", "ca", "password_file", "trusted")
 ACCESS_PATHS = ("ca", "client_secret_file")
 
 
@@ -95,6 +97,7 @@ class Settings(BaseSettings):
     notifications: NotificationSettings = Field(default_factory=NotificationSettings)
     reports: ReportSettings = Field(default_factory=ReportSettings, validate_default=True)
     audit: AuditSettings = Field(default_factory=AuditSettings)
+    gateways: GatewaysSettings = Field(default_factory=GatewaysSettings)
 
     relays: dict[str, RelayAccess] = Field(default_factory=dict)
     relays_per_gateway: int = Field(default=250, ge=1, le=1000)
@@ -249,6 +252,7 @@ def _table(text: str, config: Path) -> dict[str, object]:
     _anchor_each(table, "relays", RELAY_PATHS, config.absolute().parent)
     _anchor_each(table.get("notifications"), "channels", CHANNEL_PATHS, config.absolute().parent)
     _anchor_each(table, "audit", CHANNEL_PATHS, config.absolute().parent)
+    _anchor_each({"gateways": table.get("gateways")}, "gateways", GATEWAY_PATHS, config.absolute().parent)
     return table
 
 

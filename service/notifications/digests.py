@@ -6,7 +6,7 @@ from datetime import datetime, timedelta
 
 from core.condition.kinds import State
 from core.units import NANOSECONDS_PER_SECOND
-from service.condition.staleness import stale_after_ns
+from service.condition.staleness import is_stale, stale_after_ns
 from service.configuration.notifications import Digest
 from service.configuration.settings import Settings
 from service.notifications.due import due_now
@@ -91,11 +91,8 @@ def _worst(motors: Collection[MotorHealth]) -> list[MotorHealth]:
 
 
 def _is_stale(motor: MotorHealth, settings: Settings, now_ns: int) -> bool:
-    condition = motor.condition
-    if condition.as_of_ns is None:
-        return True
-    seen_ns = max(condition.as_of_ns, condition.stood_ns or condition.as_of_ns)
-    return now_ns - seen_ns > stale_after_ns(motor.motor.schedule, settings.stale_after_days)
+    oldest_ns = stale_after_ns(motor.motor.schedule, settings.stale_after_days)
+    return is_stale(motor.condition, now_ns, oldest_ns)
 
 
 def _facts(motor: MotorHealth) -> Mapping[str, object]:

@@ -8,6 +8,7 @@ from core.condition.verdict.latest_record import why_milder
 from core.machines.parameters import ParametersSource
 from core.machines.typical import TYPICAL_REASON
 from service.api.conditions.schemas import Condition, ConditionReference
+from service.condition.staleness import is_stale
 from service.storage.records import ConditionEntry, LatestDiagnosis
 
 NOT_JUDGED = "no valid record of the motor has been judged yet"
@@ -83,13 +84,3 @@ def _why_milder(
         is_complete=bool(reference["complete"]),
         is_accepted=bool(reference["accepted"]),
     )
-
-
-def is_stale(entry: ConditionEntry, now_ns: int, stale_after_ns: int) -> bool:
-    """Tell whether the latest record of a condition is too old, or there is none.
-
-    A motor that stands makes no record that counts: what was known of it when it stopped is not stale.
-    """
-    if entry.as_of_ns is None:
-        return True
-    return now_ns - max(entry.as_of_ns, entry.stood_ns or entry.as_of_ns) > stale_after_ns

@@ -9,8 +9,7 @@ from prometheus_client.registry import Collector
 
 from core.condition.kinds import State
 from core.units import NANOSECONDS_PER_SECOND
-from service.api.conditions.documents import is_stale
-from service.condition.staleness import stale_after_ns
+from service.condition.staleness import is_stale, stale_after_ns
 from service.storage.records import ConditionEntry
 from service.storage.repository import Repository
 

@@ -5,10 +5,9 @@ pipe open. When the pipe closes the service is gone, however it went, and the ga
 """
 
 import os
-import signal
 import socket
 import sys
-from threading import Event, Thread
+from threading import Event
 from typing import BinaryIO, NoReturn
 
 import structlog
@@ -19,13 +18,12 @@ from service.collector.session.visit_marks import VisitMarks
 from service.configuration.settings import Settings
 from service.plant import read_plant
 from service.process.installation import installation_id
-from service.process.logs import configure_logging
 from service.process.open_files import allow_open_files
 from service.process.single_instance import exclusive
-from service.process.termination import leave_to_parent
 from service.recording_store.opening import open_store
 from service.storage import Repository, connect
 from service.storage.transaction_limits import limits_of
+from service.supervision.child import begin_child
 
 log = structlog.get_logger(__name__)
 
@@ -43,18 +41,11 @@ def gateway_id(settings: Settings, number: int) -> str:
 
 def main(settings_pipe: BinaryIO = sys.stdin.buffer) -> None:
     """Read the settings, collect until the pipe closes, end the process. The argument is its number."""
-    # They reach every process of a terminal or of a systemd unit; this one ends when the service says so.
-    leave_to_parent(signal.SIGINT, signal.SIGTERM)
-    settings = Settings.model_validate_json(settings_pipe.readline())
+    settings, service_gone = begin_child("collector", settings_pipe)
     number = int(sys.argv[1])
     if any(access.tls is not None for access in settings.relays.values()):
         filter_tls_log_from_stderr()
-    configure_logging("collector", settings.log_format)
     allow_open_files(OPEN_FILES)
-    service_gone = Event()
-    Thread(
-        target=_wait_for_end_of_input, args=(settings_pipe, service_gone), name="parent-watch", daemon=True
-    ).start()
     # The same gateway of a killed service may be about to end: holding its lock, we know that it is dead.
     with exclusive(settings.data_directory / f"gateway-{number}.lock", wait=True):
         left_over = _collect(settings, number, service_gone)
@@ -88,9 +79,3 @@ def _end_process() -> NoReturn:
     """End this process at once, whatever its threads are doing."""
     log.error("the leases could not be renewed: ending before others take the relays over")
     os._exit(LEASES_EXPIRED)
-
-
-def _wait_for_end_of_input(pipe: BinaryIO, service_gone: Event) -> None:
-    """Set `service_gone` when the service has closed the pipe, however it went."""
-    pipe.read()
-    service_gone.set()

@@ -1,5 +1,6 @@
 """Run the gateway processes of this installation, as many as its relays need."""
 
+import sys
 import time
 from functools import partial
 
@@ -10,13 +11,17 @@ from service.collector.gateway.process import gateway_id
 from service.collector.session.quarantine import QuarantinePolicy
 from service.collector.session.visit_marks import VisitMarks
 from service.collector.supervision.crash_blame import blame_after_end
-from service.collector.supervision.gateway_supervisor import GatewaySupervisor
 from service.configuration.settings import Settings
 from service.plant import Plant
 from service.storage import Repository, StorageError
+from service.supervision.supervised_process import SupervisedProcess
 from service.timing.database_silence import database_trouble
 
 log = structlog.get_logger(__name__)
+
+COLLECTOR = "the collector process"
+COMMAND = (sys.executable, "-m", "service.collector")
+"""With the gateway's number behind it."""
 
 
 class GatewayProcesses:
@@ -31,9 +36,10 @@ class GatewayProcesses:
         gateways = -(-len(plant.relays) // settings.relays_per_gateway)
         self._ids = [gateway_id(settings, number) for number in range(gateways)]
         self._supervisors = [
-            GatewaySupervisor(
+            SupervisedProcess(
+                COLLECTOR,
+                (*COMMAND, str(number)),
                 settings,
-                number=number,
                 on_exit=partial(self._handle_exit, number, name),
             )
             for number, name in enumerate(self._ids)

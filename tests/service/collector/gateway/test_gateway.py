@@ -25,8 +25,7 @@ from service.collector.gateway import gateway as gateway_module
 from service.collector.gateway.gateway import Gateway, GatewayIdentity
 from service.collector.session.relay_session import RelaySession
 from service.collector.session.visit_marks import BUSY
-from service.collector.supervision.gateway_processes import GatewayProcesses
-from service.collector.supervision.gateway_supervisor import GatewaySupervisor
+from service.collector.supervision.gateway_processes import COLLECTOR, COMMAND, GatewayProcesses
 from service.configuration.settings import Settings
 from service.demo import MOTORS
 from service.demo.addresses import free_ports
@@ -34,6 +33,7 @@ from service.plant import Plant, read_plant
 from service.recording_store.folder import FolderStore
 from service.storage import LeaseLostError, Repository, connect
 from service.storage.states import LinkState
+from service.supervision.supervised_process import SupervisedProcess
 from service.timing.backoff import Backoff
 from testing.service.database import make_database
 from testing.service.plants import NOW_NS, SECOND_NS
@@ -199,9 +199,9 @@ def test_a_gateway_takes_no_more_than_it_may(hall: Hall) -> None:
 
 
 @contextmanager
-def supervised(hall: Hall, host: str) -> Iterator[GatewaySupervisor]:
+def supervised(hall: Hall, host: str) -> Iterator[SupervisedProcess]:
     """A gateway process, kept running as the service does it, of a host of its own."""
-    supervisor = GatewaySupervisor(hall.settings_of(host))
+    supervisor = SupervisedProcess(COLLECTOR, (*COMMAND, "0"), hall.settings_of(host))
     supervisor.start()
     try:
         yield supervisor
@@ -209,7 +209,7 @@ def supervised(hall: Hall, host: str) -> Iterator[GatewaySupervisor]:
         supervisor.stop()
 
 
-def process_of(supervisor: GatewaySupervisor) -> int:
+def process_of(supervisor: SupervisedProcess) -> int:
     found = supervisor.process_id
     assert found is not None
     return found

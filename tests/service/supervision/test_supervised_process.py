@@ -1,4 +1,4 @@
-"""The collector process is kept running, and never outlives its parent."""
+"""A process of the service is kept running, and never outlives its parent."""
 
 import os
 import signal
@@ -11,10 +11,10 @@ from threading import Thread
 import pytest
 from structlog.testing import capture_logs
 
-from service.collector.supervision import gateway_supervisor
-from service.collector.supervision.gateway_supervisor import GatewaySupervisor, RestartPolicy
 from service.configuration.relay_access import RelayAccess, RelayTls
 from service.configuration.settings import Settings
+from service.supervision import supervised_process
+from service.supervision.supervised_process import RestartPolicy, SupervisedProcess
 from service.timing.backoff import Backoff
 from testing.waiting import eventually
 
@@ -22,11 +22,13 @@ OBEDIENT = "import sys; sys.stdin.readline(); sys.stdin.read()"
 STUBBORN = "import time; time.sleep(60)"
 
 
-def supervisor(script: str, directory: Path) -> GatewaySupervisor:
-    return GatewaySupervisor(Settings(data_directory=directory), (sys.executable, "-c", script))
+def supervisor(script: str, directory: Path) -> SupervisedProcess:
+    return SupervisedProcess(
+        "the process", (sys.executable, "-c", script), Settings(data_directory=directory)
+    )
 
 
-def test_a_collector_that_crashes_is_started_again(tmp_path: Path) -> None:
+def test_a_process_that_crashes_is_started_again(tmp_path: Path) -> None:
     supervised = supervisor(OBEDIENT, tmp_path)
     supervised.start()
     try:
@@ -53,7 +55,7 @@ def test_a_stop_just_after_the_start_waits_for_the_settings(
 ) -> None:
     supervised = supervisor(OBEDIENT, tmp_path)
     stopping = Thread(target=supervised.stop)
-    send_settings = gateway_supervisor._send_settings
+    send_settings = supervised_process._send_settings
 
     def slowly(child: "subprocess.Popen[bytes]", settings: Settings) -> None:
         stopping.start()
@@ -62,7 +64,7 @@ def test_a_stop_just_after_the_start_waits_for_the_settings(
         assert not eventually(lambda: stdin.closed, within_s=0.2)
         send_settings(child, settings)
 
-    monkeypatch.setattr(gateway_supervisor, "_send_settings", slowly)
+    monkeypatch.setattr(supervised_process, "_send_settings", slowly)
     supervised.start()
     assert eventually(lambda: stopping.ident is not None)
     stopping.join(10)
@@ -70,10 +72,11 @@ def test_a_stop_just_after_the_start_waits_for_the_settings(
     assert supervised.process_id is None
 
 
-def test_a_collector_that_does_not_listen_is_killed(tmp_path: Path) -> None:
-    supervised = GatewaySupervisor(
-        Settings(data_directory=tmp_path),
+def test_a_process_that_does_not_listen_is_killed(tmp_path: Path) -> None:
+    supervised = SupervisedProcess(
+        "the process",
         (sys.executable, "-c", STUBBORN),
+        Settings(data_directory=tmp_path),
         policy=RestartPolicy(stop_timeout_s=0.1),
     )
     supervised.start()
@@ -82,12 +85,12 @@ def test_a_collector_that_does_not_listen_is_killed(tmp_path: Path) -> None:
     assert supervised.process_id is None
 
 
-def test_the_settings_of_a_thousand_relays_wait_for_no_collector(tmp_path: Path) -> None:
+def test_the_settings_of_a_thousand_relays_wait_for_no_process(tmp_path: Path) -> None:
     tls = RelayTls(certificate=tmp_path, key=tmp_path, pinned=(tmp_path, tmp_path), ca=tmp_path)
     relays = {f"A{number}_SEL710": RelayAccess(tls=tls, password_file=tmp_path) for number in range(1000)}
     settings = Settings(data_directory=tmp_path, relays=relays)
-    supervised = GatewaySupervisor(
-        settings, (sys.executable, "-c", STUBBORN), policy=RestartPolicy(stop_timeout_s=0.2)
+    supervised = SupervisedProcess(
+        "the process", (sys.executable, "-c", STUBBORN), settings, policy=RestartPolicy(stop_timeout_s=0.2)
     )
     supervised.start()
     assert eventually(lambda: supervised.process_id is not None)
@@ -97,28 +100,32 @@ def test_the_settings_of_a_thousand_relays_wait_for_no_collector(tmp_path: Path)
     assert not stopping.is_alive()
 
 
-def test_a_collector_that_cannot_be_started_is_tried_again(tmp_path: Path) -> None:
+def test_a_process_that_cannot_be_started_is_tried_again(tmp_path: Path) -> None:
     ends: list[float] = []
-    supervised = GatewaySupervisor(
-        Settings(data_directory=tmp_path),
+    supervised = SupervisedProcess(
+        "the process",
         (str(tmp_path / "missing"),),
+        Settings(data_directory=tmp_path),
         on_exit=lambda _: ends.append(time.monotonic()),
     )
     supervised.start()
     assert eventually(lambda: len(ends) >= 2)
-    assert supervised.problem() == "the collector process is not running"
+    assert supervised.problem() == "the process is not running"
     supervised.stop()
 
 
-def test_a_bug_in_what_follows_an_end_keeps_no_collector_from_its_restart(tmp_path: Path) -> None:
+def test_a_bug_in_what_follows_an_end_keeps_no_process_from_its_restart(tmp_path: Path) -> None:
     ends: list[int | None] = []
 
     def fail(exit_code: int | None) -> None:
         ends.append(exit_code)
         raise RuntimeError("a bug")
 
-    supervised = GatewaySupervisor(
-        Settings(data_directory=tmp_path), (sys.executable, "-c", "raise SystemExit(3)"), on_exit=fail
+    supervised = SupervisedProcess(
+        "the process",
+        (sys.executable, "-c", "raise SystemExit(3)"),
+        Settings(data_directory=tmp_path),
+        on_exit=fail,
     )
     supervised.start()
     assert eventually(lambda: ends[:2] == [3, 3])
@@ -135,9 +142,10 @@ def test_each_further_end_is_waited_for_longer_until_one_has_run_well(
 ) -> None:
     """A collector that ends at once must not keep the machine busy with starting it."""
     ends: list[int | None] = []
-    supervised = GatewaySupervisor(
-        Settings(data_directory=tmp_path),
+    supervised = SupervisedProcess(
+        "the process",
         (str(tmp_path / "missing"),),
+        Settings(data_directory=tmp_path),
         policy=RestartPolicy(Backoff(first_s=0.001, longest_s=0.004), stable_after_s=stable_after_s),
         on_exit=ends.append,
     )
@@ -153,3 +161,44 @@ def test_the_pauses_of_the_service_begin_short_and_reach_half_a_minute() -> None
     policy = RestartPolicy()
     assert [policy.backoff.pause_s(failures) for failures in (1, 2, 3, 9, 99)] == [0.2, 0.4, 0.8, 30.0, 30.0]
     assert policy.stable_after_s == 60.0
+
+
+def test_what_a_process_says_is_heard_line_by_line(tmp_path: Path) -> None:
+    heard: list[bytes] = []
+
+    def hear(line: bytes) -> None:
+        heard.append(line)
+        if line == b"first\n":
+            raise RuntimeError("a bug")
+
+    script = "import sys; sys.stdin.readline(); print('first', flush=True); print('x' * 5000, flush=True)"
+    supervised = SupervisedProcess(
+        "the process",
+        (sys.executable, "-c", f"{script}; sys.stdin.read()"),
+        Settings(data_directory=tmp_path),
+        on_line=hear,
+    )
+    supervised.start()
+    try:
+        assert eventually(lambda: len(heard) >= 3)
+    finally:
+        supervised.stop()
+    assert heard == [b"first\n", b"x" * 4096, b"x" * 904 + b"\n"]
+
+
+def test_a_child_reads_its_settings_and_sees_its_parent_go(tmp_path: Path) -> None:
+    script = (
+        "from service.supervision.child import begin_child;"
+        "settings, gone = begin_child('child');"
+        "print(settings.data_directory, gone.is_set(), flush=True);"
+        "gone.wait();"
+        "print('gone', flush=True)"
+    )
+    heard: list[bytes] = []
+    supervised = SupervisedProcess(
+        "the child", (sys.executable, "-c", script), Settings(data_directory=tmp_path), on_line=heard.append
+    )
+    supervised.start()
+    assert eventually(lambda: bool(heard), within_s=60)
+    supervised.stop()
+    assert heard == [f"{tmp_path} False\n".encode(), b"gone\n"]

@@ -1,13 +1,13 @@
-"""Keep one gateway process running. A crash in the C library costs a restart, not the service."""
+"""Keep one process of the service running. A crash in it costs a restart, not the service."""
 
 import signal
 import subprocess
-import sys
 import time
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from threading import Event, Lock, Thread
+from typing import IO
 
 import structlog
 
@@ -17,18 +17,19 @@ from service.timing.backoff import PROCESS_BACKOFF, STABLE_AFTER_S, Backoff, Res
 
 log = structlog.get_logger(__name__)
 
-COMMAND = (sys.executable, "-m", "service.collector")
-
 PIPE_BYTES = 1024**2
 """Room for the settings of a few thousand relays: the system's usual 64 kB would be too little for 200."""
+
+LONGEST_LINE = 4096
+"""Bytes of what a process says in one line; the rest is taken for another line."""
 
 
 @dataclass(frozen=True, slots=True)
 class RestartPolicy:
-    """Say when a gateway that ended is started again, and how long one may take to end.
+    """Say when a process that ended is started again, and how long one may take to end.
 
-    backoff: the pauses before further starts.  stable_after_s: a gateway that ran for longer than this ran
-    well, and the next pause is the first one again.  stop_timeout_s: a gateway that takes longer to end is
+    backoff: the pauses before further starts.  stable_after_s: a process that ran for longer than this ran
+    well, and the next pause is the first one again.  stop_timeout_s: a process that takes longer to end is
     killed.
     """
 
@@ -41,76 +42,82 @@ RESTART_POLICY = RestartPolicy()
 
 
 def _ignore(_exit_code: int | None) -> None:
-    """Do nothing about the end of a gateway."""
+    """Do nothing about the end of a process."""
 
 
-class GatewaySupervisor:
-    """Start a gateway as a child process, and start it again when it ends.
+class SupervisedProcess:
+    """Start a child process, and start it again when it ends.
 
     The child reads its settings from its standard input and ends when that closes: it cannot outlive this
     process, however this process dies, and no setting appears in a command line or an environment.
+    service.supervision.child is its half.
     """
 
     def __init__(
         self,
+        name: str,
+        command: tuple[str, ...],
         settings: Settings,
-        command: tuple[str, ...] = COMMAND,
         *,
-        number: int = 0,
         policy: RestartPolicy = RESTART_POLICY,
         on_exit: Callable[[int | None], None] = _ignore,
+        on_line: Callable[[bytes], None] | None = None,
     ) -> None:
-        """Prepare the thread that keeps the gateway running.
+        """Prepare the thread that keeps the process running.
 
-        number: tells the gateway from the others of this service.
+        name: what people call it, with an article.
 
         on_exit: called after each end of the process with its exit code; None where it did not start.
+
+        on_line: called with each line of the child's standard output; None where nothing is heard of that.
         """
+        self._name = name
+        self._command = command
         self._settings = settings
-        self._command = (*command, str(number))
         self._policy = policy
         self._on_exit = on_exit
+        self._on_line = on_line
         self._lock = Lock()
         self._stopping = Event()
         self._child: subprocess.Popen[bytes] | None = None
-        self._thread = Thread(target=self._run, name="gateway-supervisor", daemon=True)
+        self._thread = Thread(target=self._run, name=f"supervisor of {name}", daemon=True)
 
     @property
     def process_id(self) -> int | None:
-        """Return the process id of the running gateway; None while there is none."""
+        """Return the process id of the running child; None while there is none."""
         child = self._child
         return child.pid if child is not None and child.poll() is None else None
 
     def problem(self) -> str | None:
-        """Return why nothing is collected at present; None while all is well."""
-        return "the collector process is not running" if self.process_id is None else None
+        """Return that the process is not running at present; None while it is."""
+        return f"{self._name} is not running" if self.process_id is None else None
 
     def start(self) -> None:
-        """Start the gateway, and the thread that keeps it running."""
+        """Start the process, and the thread that keeps it running."""
         self._thread.start()
 
     def ask_to_end(self) -> None:
-        """Ask the gateway to end, and wait for nothing. Safe to call twice."""
+        """Ask the process to end, and wait for nothing. Safe to call twice."""
         with self._lock:
             self._stopping.set()
             if self._child is not None:
                 _close_input(self._child)
 
     def stop(self) -> None:
-        """Ask the gateway to end, wait for it, kill it if it does not end in time. Safe to call twice."""
+        """Ask the process to end, wait for it, kill it if it does not end in time. Safe to call twice."""
         self.ask_to_end()
         child = self._child
         if child is not None:
             try:
                 child.wait(self._policy.stop_timeout_s)
             except subprocess.TimeoutExpired:
-                log.warning("the collector did not end by itself and is killed")
+                log.warning("a process did not end by itself and is killed", process=self._name)
                 child.kill()
         if self._thread.ident is not None:
             self._thread.join()
 
     def _run(self) -> None:
-        """Run gateways one after the other, with pauses between them, until no more is wanted."""
+        """Run one process after the other, with pauses between them, until no more is wanted."""
         delay = RestartDelay(self._policy.backoff, stable_after_s=self._policy.stable_after_s)
         while not self._stopping.is_set():
             started_s = time.monotonic()
@@ -123,36 +130,50 @@ class GatewaySupervisor:
             lasted_s = time.monotonic() - started_s
             try:
                 self._on_exit(exit_code)
-            except Exception:  # the collector is started again whatever goes wrong in between
-                log.exception("what is done after the collector's end failed")
+            except Exception:  # the process is started again whatever goes wrong in between
+                log.exception("what is done after a process's end failed", process=self._name)
             if self._stopping.is_set():
                 return
             delay_s = delay.after_run_s(lasted_s)
-            log.error("the collector ended and is started again", reason=ended, delay_s=delay_s)
+            log.error(
+                "a process ended and is started again", process=self._name, reason=ended, delay_s=delay_s
+            )
             self._stopping.wait(delay_s)
 
     def _run_once(self) -> int | None:
-        """Run one gateway from start to end. Returns its exit code; None when none is wanted any more."""
+        """Run one process from start to end. Returns its exit code; None when none is wanted any more."""
         with self._lock:
             if self._stopping.is_set():
                 return None
-            with held_back(signal.SIGINT, signal.SIGTERM):  # until the gateway ignores them
+            with held_back(signal.SIGINT, signal.SIGTERM):  # until the process ignores them
                 child = self._child = subprocess.Popen(  # noqa: S603 - our own module
                     self._command,
                     stdin=subprocess.PIPE,
-                    stdout=subprocess.DEVNULL,
+                    stdout=subprocess.DEVNULL if self._on_line is None else subprocess.PIPE,
                     pipesize=PIPE_BYTES,
                 )
             # The settings are sent before anybody may close that pipe. They fit into it, so this never waits.
             _send_settings(child, self._settings)
+        if child.stdout is not None:
+            self._hear(child.stdout)
         exit_code = child.wait()
         with self._lock:
             _close_input(child)
         return exit_code
 
+    def _hear(self, output: IO[bytes]) -> None:
+        """Pass on each line that the child writes, until it closes its output."""
+        assert self._on_line is not None  # noqa: S101 - else the output is no pipe
+        with output:
+            while line := output.readline(LONGEST_LINE):
+                try:
+                    self._on_line(line)
+                except Exception:  # a bug in whoever hears it must not let the child fill its pipe and wait
+                    log.exception("what a process says was not understood", process=self._name)
 
-def _send_settings(child: subprocess.Popen[bytes], settings: Settings) -> None:
-    """Write the settings to the input of a gateway as one line."""
+
+def _send_settings(child: "subprocess.Popen[bytes]", settings: Settings) -> None:
+    """Write the settings to the input of a child as one line."""
     assert child.stdin is not None  # noqa: S101 - it was opened as a pipe
     # A child that is dead already reports itself by its exit code.
     with suppress(BrokenPipeError):
@@ -160,8 +181,8 @@ def _send_settings(child: subprocess.Popen[bytes], settings: Settings) -> None:
         child.stdin.flush()
 
 
-def _close_input(child: subprocess.Popen[bytes]) -> None:
-    """Close the input of a gateway, which ends it."""
+def _close_input(child: "subprocess.Popen[bytes]") -> None:
+    """Close the input of a child, which ends it."""
     assert child.stdin is not None  # noqa: S101 - it was opened as a pipe
     with suppress(BrokenPipeError):
         child.stdin.close()

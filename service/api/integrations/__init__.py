@@ -1,0 +1,1 @@
+"""Routes about the gateways to the plant's other systems."""

@@ -1,0 +1,16 @@
+"""The table [gateways] of the settings: a gateway runs where its table is there."""
+
+from collections.abc import Sequence
+
+from pydantic import BaseModel, ConfigDict
+
+
+class GatewaysSettings(BaseModel):
+    """Each of them is off unless its table is given."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+    @property
+    def configured(self) -> Sequence[str]:
+        """Return the kinds of the gateways that are to run."""
+        return [kind for kind in type(self).model_fields if getattr(self, kind) is not None]

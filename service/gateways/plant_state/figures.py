@@ -1,0 +1,156 @@
+"""The plant as gateways tell it: motors, relays and open alarms at one time, each value with its quality."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+from typing import TypeVar
+
+from core.condition.assessment import Phase
+from core.condition.kinds import Kind, State
+from core.rotor.finding import RotorState
+from service.gateways.plant_state.device_health import DeviceHealth
+from service.storage.records import Alarm
+from service.storage.states import AlarmPriority, LinkState
+
+
+class Quality(StrEnum):
+    """How far a value can be relied on. IEC 61850 calls them good, questionable and invalid."""
+
+    GOOD = "good"
+    UNCERTAIN = "uncertain"
+    BAD = "bad"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MotorFigures:
+    """What is told of a motor.
+
+    phase: of shorted turns.  mu_f: total level of the fault, a fraction of the phase's turns.  change: level
+    since the reference; each with its 95 % interval.  detection_limit, load_level: of the latest record that
+    has them.  rotor: what its standing alarm says.  device_health: the worst of all that.
+    since_ns: when the state began.  as_of_ns: time of the latest record in it, and of all values.
+    alarms: how many call for somebody; priority: of the most urgent one.
+    quality, quality_reason: of all figures; the reason is None where it is good.
+    """
+
+    name: str
+    description: str
+    site: str
+    relay: str
+    state: State
+    kind: Kind
+    phase: Phase | None
+    mu_f: float | None
+    mu_f_ci95: tuple[float, float] | None
+    change: float | None
+    change_ci95: tuple[float, float] | None
+    detection_limit: float | None
+    load_level: float | None
+    rotor: RotorState | None
+    device_health: DeviceHealth
+    since_ns: int | None
+    as_of_ns: int | None
+    stale: bool
+    advice: str
+    reasons: tuple[str, ...]
+    alarms: int
+    priority: AlarmPriority | None
+    quality: Quality
+    quality_reason: str | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RelayFigures:
+    """What is told of a relay. link_reason: why it does not answer.  changed_ns: when its link changed."""
+
+    name: str
+    site: str
+    manufacturer: str
+    type: str
+    link: LinkState
+    link_reason: str | None
+    changed_ns: int | None
+    device_health: DeviceHealth
+    quality: Quality
+    quality_reason: str | None
+
+
+Figures = TypeVar("Figures", MotorFigures, RelayFigures)
+
+
+@dataclass(frozen=True, slots=True)
+class PlantState:
+    """All that gateways tell. motors, relays: by name.  alarms: those that are open, by id.
+
+    read_ns: when it was read.
+    """
+
+    motors: Mapping[str, MotorFigures] = field(default_factory=dict)
+    relays: Mapping[str, RelayFigures] = field(default_factory=dict)
+    alarms: Mapping[str, Alarm] = field(default_factory=dict)
+    read_ns: int = field(default=0, compare=False)
+
+    def as_uncertain(self, reason: str) -> "PlantState":
+        """Return it with no value that counts as good any more."""
+        return replace(
+            self, motors=_each_uncertain(self.motors, reason), relays=_each_uncertain(self.relays, reason)
+        )
+
+
+def _each_uncertain(items: Mapping[str, Figures], reason: str) -> Mapping[str, Figures]:
+    return {name: _uncertain(one, reason) for name, one in items.items()}
+
+
+def _uncertain(one: Figures, reason: str) -> Figures:
+    if one.quality is not Quality.GOOD:
+        return one
+    return replace(one, quality=Quality.UNCERTAIN, quality_reason=reason)
+
+
+@dataclass(frozen=True, slots=True)
+class PlantChange:
+    """What was told before, and what is to be told now."""
+
+    before: PlantState
+    now: PlantState
+
+    @property
+    def motors(self) -> tuple[MotorFigures, ...]:
+        """Return the motors of which something else is told, or that are new."""
+        return _changed(self.before.motors, self.now.motors)
+
+    @property
+    def relays(self) -> tuple[RelayFigures, ...]:
+        """Return the relays of which something else is told, or that are new."""
+        return _changed(self.before.relays, self.now.relays)
+
+    @property
+    def alarms(self) -> tuple[Alarm, ...]:
+        """Return the open alarms that changed, or are new."""
+        return _changed(self.before.alarms, self.now.alarms)
+
+    @property
+    def motors_gone(self) -> tuple[str, ...]:
+        """Return the motors that are no longer in service."""
+        return _gone(self.before.motors, self.now.motors)
+
+    @property
+    def relays_gone(self) -> tuple[str, ...]:
+        """Return the relays that are no longer in service."""
+        return _gone(self.before.relays, self.now.relays)
+
+    @property
+    def alarms_gone(self) -> tuple[str, ...]:
+        """Return the ids of the alarms that are over."""
+        return _gone(self.before.alarms, self.now.alarms)
+
+
+Item = TypeVar("Item")
+
+
+def _changed(before: Mapping[str, Item], now: Mapping[str, Item]) -> tuple[Item, ...]:
+    return tuple(item for name, item in now.items() if before.get(name) != item)
+
+
+def _gone(before: Mapping[str, Item], now: Mapping[str, Item]) -> tuple[str, ...]:
+    return tuple(name for name in before if name not in now)

@@ -1,0 +1,118 @@
+"""Reads from the database what gateways tell."""
+
+from collections.abc import Callable, Iterator
+
+from core.condition.kinds import State
+from core.condition.verdict.advice import advice
+from service.condition.staleness import is_stale, stale_after_ns
+from service.gateways.plant_state.device_health import health_of_motor, health_of_relay
+from service.gateways.plant_state.figures import MotorFigures, PlantState, Quality, RelayFigures
+from service.storage.records import Cursor, FleetMotor, IedEntry, Page
+from service.storage.repository import Repository
+
+PAGE = 500
+MOST_ALARMS = 1000
+"""Open alarms that are told; the most urgent ones come first."""
+
+MOST_REASONS = 10
+NOT_JUDGED = "no valid record of the motor has been judged yet"
+
+
+def read_plant_state(repository: Repository, *, now_ns: int, stale_after_days: float | None) -> PlantState:
+    """Return what is to be told now. stale_after_days: that of the settings.
+
+    Raises SQLAlchemyError where the database does not answer.
+    """
+    motors = [_motor(one, now_ns, stale_after_days) for one in repository.fleet()]
+    relays = [_relay(one) for one in _all(lambda after: repository.relays(limit=PAGE, after=after))]
+    alarms = repository.open_alarms(limit=MOST_ALARMS).items
+    return PlantState(
+        motors={motor.name: motor for motor in motors},
+        relays={relay.name: relay for relay in relays},
+        alarms={alarm.id: alarm for alarm in alarms},
+        read_ns=now_ns,
+    )
+
+
+def _all(page_after: Callable[[Cursor | None], Page[IedEntry]]) -> Iterator[IedEntry]:
+    page = page_after(None)
+    yield from page.items
+    while page.next is not None:
+        page = page_after(page.next)
+        yield from page.items
+
+
+def _motor(one: FleetMotor, now_ns: int, stale_after_days: float | None) -> MotorFigures:
+    condition = one.condition
+    stale = is_stale(condition, now_ns, stale_after_ns(one.motor.schedule, stale_after_days))
+    rotor = None if one.rotor is None else one.rotor.state
+    quality, reason = _quality(one, stale=stale)
+    return MotorFigures(
+        name=one.motor.name,
+        description=one.motor.description,
+        site=one.motor.site,
+        relay=one.motor.ied,
+        state=condition.state,
+        kind=condition.kind,
+        phase=condition.phase,
+        mu_f=condition.mu_f,
+        mu_f_ci95=condition.mu_f_ci95,
+        change=condition.change,
+        change_ci95=condition.change_ci95,
+        detection_limit=None if one.figures is None else one.figures.detection_limit,
+        load_level=None if one.figures is None else one.figures.load_level,
+        rotor=rotor,
+        device_health=health_of_motor(condition.state, condition.kind, stale=stale, rotor=rotor),
+        since_ns=condition.since_ns,
+        as_of_ns=condition.as_of_ns,
+        stale=stale,
+        advice=_advice(one),
+        reasons=_reasons(one),
+        alarms=0 if one.alarms is None else one.alarms.number,
+        priority=None if one.alarms is None else one.alarms.priority,
+        quality=quality,
+        quality_reason=reason,
+    )
+
+
+def _quality(one: FleetMotor, *, stale: bool) -> tuple[Quality, str | None]:
+    """Return how far the figures of a motor can be relied on, and why not further."""
+    condition = one.condition
+    if condition.as_of_ns is None:
+        return Quality.BAD, NOT_JUDGED
+    if condition.problem is not None:
+        return Quality.UNCERTAIN, f"later records are not taken into account: {condition.problem}"
+    if stale:
+        return Quality.UNCERTAIN, "the latest record that counts is older than the next ones were due"
+    if condition.state is State.UNKNOWN:
+        return Quality.UNCERTAIN, "the records do not tell the condition"
+    return Quality.GOOD, None
+
+
+def _advice(one: FleetMotor) -> str:
+    document = one.condition.document or {}
+    told = document.get("advice")
+    return told if isinstance(told, str) else advice(one.condition.state, one.condition.kind)
+
+
+def _reasons(one: FleetMotor) -> tuple[str, ...]:
+    document = one.condition.document or {}
+    told = document.get("reasons")
+    if not isinstance(told, list):
+        return (NOT_JUDGED,)
+    return tuple(str(reason) for reason in told[:MOST_REASONS])
+
+
+def _relay(entry: IedEntry) -> RelayFigures:
+    return RelayFigures(
+        name=entry.name,
+        site=entry.site,
+        manufacturer=entry.manufacturer,
+        type=entry.type,
+        link=entry.link_state,
+        link_reason=entry.link_reason,
+        changed_ns=entry.link_changed_ns,
+        device_health=health_of_relay(entry.link_state),
+        quality=Quality.GOOD,
+        quality_reason=None,
+    )

@@ -1,0 +1,51 @@
+"""Run one gateway as a process of its own: `python -m service.gateways KIND`, started by the service.
+
+What does not work in it goes to the service as lines of JSON on the standard output.
+"""
+
+import json
+import os
+import sys
+from collections.abc import Callable, Mapping
+from typing import BinaryIO
+
+from service.gateways.context import GatewayContext
+from service.storage import Repository, connect
+from service.storage.transaction_limits import limits_of
+from service.supervision.child import begin_child
+
+Run = Callable[[GatewayContext], None]
+
+KINDS: Mapping[str, Callable[[], Run]] = {}
+"""Each loads its gateway, with its library, in its own process alone."""
+
+
+def main() -> None:
+    """Run the gateway that the command line names until the service is gone."""
+    kind = sys.argv[1]
+    run = KINDS[kind]()
+    settings, stop = begin_child(f"gateway {kind}")
+    with _private_output() as output:
+        repository = Repository(connect(settings.database_url, limits=limits_of(settings)))
+        run(GatewayContext(settings, repository, stop, ProblemTeller(output)))
+
+
+def _private_output() -> BinaryIO:
+    """Return the standard output, and let what libraries print there go to the standard error."""
+    output = os.dup(sys.stdout.fileno())
+    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
+    return os.fdopen(output, "wb", buffering=0)
+
+
+class ProblemTeller:
+    """Writes a line where another problem is told than before."""
+
+    def __init__(self, output: BinaryIO) -> None:
+        self._output = output
+        self._told: str | None = ""
+
+    def __call__(self, problem: str | None) -> None:
+        """Tell what does not work; None where all does."""
+        if problem != self._told:
+            self._told = problem
+            self._output.write(json.dumps({"problem": problem}).encode() + b"\n")

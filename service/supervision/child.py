@@ -1,0 +1,31 @@
+"""The child's half of a supervised process: it gets its settings from its parent, and ends with it."""
+
+import signal
+import sys
+from threading import Event, Thread
+from typing import BinaryIO
+
+from service.configuration.settings import Settings
+from service.process.logs import configure_logging
+from service.process.termination import leave_to_parent
+
+
+def begin_child(process: str, settings_pipe: BinaryIO = sys.stdin.buffer) -> tuple[Settings, Event]:
+    """Return the settings, and an event that is set when the parent has closed the pipe, however it went.
+
+    process: names this one in the log.
+    """
+    # They reach every process of a terminal or of a systemd unit; this one ends when the service says so.
+    leave_to_parent(signal.SIGINT, signal.SIGTERM)
+    settings = Settings.model_validate_json(settings_pipe.readline())
+    configure_logging(process, settings.log_format)
+    parent_gone = Event()
+    Thread(
+        target=_wait_for_end_of_input, args=(settings_pipe, parent_gone), name="parent-watch", daemon=True
+    ).start()
+    return settings, parent_gone
+
+
+def _wait_for_end_of_input(pipe: BinaryIO, parent_gone: Event) -> None:
+    pipe.read()
+    parent_gone.set()

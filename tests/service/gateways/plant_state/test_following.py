@@ -1,0 +1,126 @@
+"""What gateways tell follows the database, and nothing old counts as good."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from threading import Event
+
+import pytest
+
+from core.condition.kinds import Kind, State
+from core.rotor.finding import RotorState
+from core.units import NANOSECONDS_PER_DAY
+from service.gateways.plant_state.device_health import DeviceHealth, health_of_motor
+from service.gateways.plant_state.figures import PlantChange, Quality
+from service.gateways.plant_state.following import PlantFollower
+from service.gateways.plant_state.reading import NOT_JUDGED, read_plant_state
+from service.storage import Repository, connect
+from service.storage.states import LinkState
+from testing.service.conditions import FAULT, HEALTHY, tell
+from testing.service.database import make_database
+from testing.service.plants import NOW_NS, two_motor_plant
+
+
+@pytest.fixture
+def repository(tmp_path: Path) -> Repository:
+    repository = Repository(connect(make_database(tmp_path)))
+    repository.sync_plant(two_motor_plant())
+    return repository
+
+
+@pytest.fixture
+def follower(repository: Repository, monkeypatch: pytest.MonkeyPatch) -> Iterator[PlantFollower]:
+    monkeypatch.setattr("service.gateways.plant_state.following.SHORTEST_PAUSE_S", 0.0)
+    monkeypatch.setattr("service.gateways.plant_state.following.SHARE", 0)
+    monkeypatch.setattr("service.gateways.plant_state.following.time.time_ns", lambda: NOW_NS)
+    follower = PlantFollower(repository, period_s=0.01, silence_s=0.2)
+    yield follower
+    follower.close()
+
+
+def next_change(follower: PlantFollower) -> PlantChange:
+    change = follower.next_change(Event(), longest_s=20)
+    assert change is not None
+    return change
+
+
+def test_the_first_change_has_the_whole_plant(repository: Repository, follower: PlantFollower) -> None:
+    tell(repository, replace(FAULT, motor="PUMP-A1"))
+    change = next_change(follower)
+    pump, fan = change.now.motors["PUMP-A1"], change.now.motors["FAN-A2"]
+    assert {motor.name for motor in change.motors} == {"PUMP-A1", "FAN-A2"}
+    assert (pump.state, pump.phase, pump.mu_f) == (State.FAULT, "b", 0.0121)
+    assert (pump.quality, pump.device_health) == (Quality.GOOD, DeviceHealth.FAILURE)
+    assert pump.as_of_ns == NOW_NS
+    assert (fan.state, fan.quality, fan.quality_reason) == (State.UNKNOWN, Quality.BAD, NOT_JUDGED)
+    assert fan.device_health is DeviceHealth.CHECK_FUNCTION
+    assert change.now.relays["A1_SEL710"].link is LinkState.UNKNOWN
+
+
+def test_only_what_differs_is_told_again(repository: Repository, follower: PlantFollower) -> None:
+    tell(repository, HEALTHY)
+    next_change(follower)
+    assert follower.next_change(Event(), longest_s=0.1) is None
+    repository.set_link_state("A2_SEL710", LinkState.DOWN, now_ns=NOW_NS, reason="no answer")
+    change = next_change(follower)
+    assert [relay.name for relay in change.relays] == ["A2_SEL710"]
+    assert change.relays[0].device_health is DeviceHealth.FAILURE
+    assert change.motors == ()
+    tell(repository, FAULT)
+    (motor,) = next_change(follower).motors
+    assert (motor.name, motor.state) == ("PUMP-A1", State.FAULT)
+
+
+def test_an_old_condition_is_uncertain(repository: Repository) -> None:
+    tell(repository, HEALTHY)
+    later_ns = NOW_NS + 8 * NANOSECONDS_PER_DAY
+    motor = read_plant_state(repository, now_ns=later_ns, stale_after_days=7).motors["PUMP-A1"]
+    assert (motor.stale, motor.quality) == (True, Quality.UNCERTAIN)
+    assert motor.device_health is DeviceHealth.CHECK_FUNCTION
+    fresh = read_plant_state(repository, now_ns=later_ns, stale_after_days=9).motors["PUMP-A1"]
+    assert (fresh.stale, fresh.quality) == (False, Quality.GOOD)
+
+
+def test_nothing_is_good_while_the_database_is_silent_and_all_is_told_again_after(
+    repository: Repository, follower: PlantFollower, tmp_path: Path
+) -> None:
+    tell(repository, HEALTHY)
+    assert next_change(follower).now.motors["PUMP-A1"].quality is Quality.GOOD
+    database = tmp_path / "statorwatch.sqlite"
+    follower.close()
+    away = database.rename(tmp_path / "away.sqlite")
+    database.mkdir()  # else SQLite would make an empty file
+    repository._reading.dispose()
+    silent = next_change(follower)
+    assert {motor.quality for motor in silent.now.motors.values()} == {Quality.UNCERTAIN, Quality.BAD}
+    assert silent.now.motors["PUMP-A1"].quality_reason == "the service's database does not answer"
+    assert follower.problem is not None
+    database.rmdir()
+    away.rename(database)
+    assert next_change(follower).now.motors["PUMP-A1"].quality is Quality.GOOD
+    assert follower.problem is None
+
+
+def test_stopping_ends_the_wait(follower: PlantFollower) -> None:
+    next_change(follower)
+    stop = Event()
+    stop.set()
+    assert follower.next_change(stop) is None
+
+
+@pytest.mark.parametrize(
+    ("state", "kind", "stale", "rotor", "expected"),
+    [
+        (State.HEALTHY, Kind.NONE, False, None, DeviceHealth.NORMAL),
+        (State.WATCH, Kind.UNCLEAR, False, None, DeviceHealth.MAINTENANCE_REQUIRED),
+        (State.FAULT, Kind.SHORTED_TURNS, True, None, DeviceHealth.FAILURE),
+        (State.FAULT, Kind.SUPPLY, False, None, DeviceHealth.OFF_SPEC),
+        (State.HEALTHY, Kind.NONE, True, None, DeviceHealth.CHECK_FUNCTION),
+        (State.UNKNOWN, Kind.NONE, False, RotorState.WATCH, DeviceHealth.MAINTENANCE_REQUIRED),
+        (State.WATCH, Kind.UNCLEAR, False, RotorState.FAULT, DeviceHealth.FAILURE),
+    ],
+)
+def test_the_worse_one_of_winding_and_rotor_is_the_health_of_a_motor(
+    state: State, kind: Kind, stale: bool, rotor: RotorState | None, expected: DeviceHealth
+) -> None:
+    assert health_of_motor(state, kind, stale=stale, rotor=rotor) is expected
