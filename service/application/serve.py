@@ -26,7 +26,7 @@ from service.condition.motor_data import document_of
 from service.configuration.problems import Problems
 from service.configuration.relay_access import clear_passwords
 from service.configuration.settings import Settings, SettingsError
-from service.gateways.supervision import PlantGateways
+from service.gateways.supervision import PlantGateways, missing_library
 from service.jobs import JobRunner
 from service.notifications.checking import channel_problems, report_problems, route_problems, warnings
 from service.notifications.work import NotificationWork
@@ -68,6 +68,8 @@ def _serve(settings: Settings, settings_file: Path | None, termination: Terminat
     """Start step by step, and answer requests until a signal comes. Raises SystemExit during the start."""
     plant = checked_plant(settings)
     _require_sign_on(settings)
+    if (missing := missing_library(settings)) is not None:
+        raise ServeError(missing)
     certificate = _certificate(settings)
     require_writable(settings.data_directory)
     termination.step()

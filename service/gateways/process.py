@@ -16,7 +16,14 @@ from service.supervision.child import begin_child
 
 Run = Callable[[GatewayContext], None]
 
-KINDS: Mapping[str, Callable[[], Run]] = {}
+
+def _modbus() -> Run:
+    from service.gateways.modbus.gateway import run
+
+    return run
+
+
+KINDS: Mapping[str, Callable[[], Run]] = {"modbus": _modbus}
 """Each loads its gateway, with its library, in its own process alone."""
 
 

@@ -2,9 +2,10 @@
 
 import json
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from importlib.util import find_spec
 from threading import Lock
 
 import structlog
@@ -17,6 +18,9 @@ log = structlog.get_logger(__name__)
 COMMAND = (sys.executable, "-m", "service.gateways")
 """With the gateway's kind behind it."""
 
+LIBRARIES: Mapping[str, str] = {"modbus": "pymodbus"}
+"""The library that a gateway needs besides those of the service; the extra has the name of its kind."""
+
 STARTING = "it starts"
 LONGEST_PROBLEM = 500
 
@@ -28,6 +32,18 @@ class PlantGatewayStatus:
     kind: str
     process_id: int | None
     problem: str | None
+
+
+def missing_library(settings: Settings) -> str | None:
+    """Return which library a gateway of the settings lacks, and how to have it; None where none does."""
+    for kind in settings.gateways.configured:
+        library = LIBRARIES.get(kind)
+        if library is not None and find_spec(library) is None:
+            return (
+                f"gateways.{kind}: expected the library {library}, found none: "
+                f'pip install "statorwatch[{kind}]"'
+            )
+    return None
 
 
 class PlantGateways:

@@ -4,11 +4,15 @@ from collections.abc import Sequence
 
 from pydantic import BaseModel, ConfigDict
 
+from service.configuration.gateways.modbus import ModbusSettings
+
 
 class GatewaysSettings(BaseModel):
     """Each of them is off unless its table is given."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+    modbus: ModbusSettings | None = None
 
     @property
     def configured(self) -> Sequence[str]:

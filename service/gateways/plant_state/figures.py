@@ -82,18 +82,22 @@ Figures = TypeVar("Figures", MotorFigures, RelayFigures)
 class PlantState:
     """All that gateways tell. motors, relays: by name.  alarms: those that are open, by id.
 
-    read_ns: when it was read.
+    is_current: False where the database has not answered for long.  read_ns: when it was read.
     """
 
     motors: Mapping[str, MotorFigures] = field(default_factory=dict)
     relays: Mapping[str, RelayFigures] = field(default_factory=dict)
     alarms: Mapping[str, Alarm] = field(default_factory=dict)
+    is_current: bool = True
     read_ns: int = field(default=0, compare=False)
 
     def as_uncertain(self, reason: str) -> "PlantState":
         """Return it with no value that counts as good any more."""
         return replace(
-            self, motors=_each_uncertain(self.motors, reason), relays=_each_uncertain(self.relays, reason)
+            self,
+            motors=_each_uncertain(self.motors, reason),
+            relays=_each_uncertain(self.relays, reason),
+            is_current=False,
         )
 
 

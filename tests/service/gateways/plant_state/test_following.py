@@ -14,18 +14,10 @@ from service.gateways.plant_state.device_health import DeviceHealth, health_of_m
 from service.gateways.plant_state.figures import PlantChange, Quality
 from service.gateways.plant_state.following import PlantFollower
 from service.gateways.plant_state.reading import NOT_JUDGED, read_plant_state
-from service.storage import Repository, connect
+from service.storage import Repository
 from service.storage.states import LinkState
 from testing.service.conditions import FAULT, HEALTHY, tell
-from testing.service.database import make_database
-from testing.service.plants import NOW_NS, two_motor_plant
-
-
-@pytest.fixture
-def repository(tmp_path: Path) -> Repository:
-    repository = Repository(connect(make_database(tmp_path)))
-    repository.sync_plant(two_motor_plant())
-    return repository
+from testing.service.plants import NOW_NS
 
 
 @pytest.fixture

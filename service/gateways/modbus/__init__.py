@@ -1,0 +1,1 @@
+"""A Modbus TCP server that tells the state of the motors in registers."""
