@@ -64,6 +64,12 @@ _SUPPLY_COLUMNS = (
     "voltage_harmonics", "line_currents_A", "current_unbalance", "thd_current", "current_harmonics",
     "active_power_W", "power_factor", "duration_s", "reasons",
 )  # fmt: skip
+_SWING_COLUMNS = (
+    "recording_id", "motor", "time_ns", "gap_permeance_ripple", "gap_standard_deviation",
+    "gap_detection_limit", "gap_lower_sideband_dB", "gap_upper_sideband_dB", "turn_load_torque",
+    "turn_load_torque_deviation", "turn_frequency_hz", "gap_reasons", "load_torque", "load_noise",
+    "load_frequency_hz", "load_torque_deviation", "load_detection_limit", "load_reasons",
+)  # fmt: skip
 _STATISTICS_COLUMNS = (
     "motor", "time_ns", "since_ns", "starts", "running_s", "stopped_s", "mean_current_A", "peak_current_A",
     "peak_start_current_A", "longest_start_s", "trips",
@@ -81,6 +87,7 @@ def tables(amounts: Amounts) -> Iterator[Table]:
     yield Table("starts", _START_COLUMNS, _starts(amounts))
     yield Table("rotor_findings", _ROTOR_COLUMNS, _rotor_findings(amounts))
     yield Table("supply_figures", _SUPPLY_COLUMNS, _supply_figures(amounts))
+    yield Table("swing_findings", _SWING_COLUMNS, _swing_findings(amounts))
     yield Table("relay_statistics", _STATISTICS_COLUMNS, _relay_statistics(amounts))
     yield Table("relay_events", ("motor", "kind", "time_ns"), _relay_events(amounts))
 
@@ -164,6 +171,15 @@ def _supply_figures(amounts: Amounts) -> Iterator[Row]:
             id_of(RECORDING, number), motor, time_ns, 50.02, "[401.0,399.5,396.25]", unbalance, unbalance,
             1.0, -0.003, 0.021, 0.0085, HARMONICS, "[1.5,1.48,1.53]", 0.02, 0.035, HARMONICS, 612.5, 0.61,
             10.0, "[]",
+        )  # fmt: skip
+
+
+def _swing_findings(amounts: Amounts) -> Iterator[Row]:
+    for number, motor, time_ns in _observed(amounts):
+        ripple = number % 83 / 40_000
+        yield (
+            id_of(RECORDING, number), motor, time_ns, ripple, 0.001, 0.0035, -58.0, -61.5, 0.002, 0.001,
+            24.25, "[]", 0.003, 0.0008, 4.125, 0.0006, 0.004, "[]",
         )  # fmt: skip
 
 

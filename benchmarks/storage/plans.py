@@ -39,6 +39,7 @@ GROWING = frozenset(
         "relay_events",
         "relay_statistics",
         "supply_figures",
+        "swing_findings",
     }
 )
 """Tables that have more rows every day."""

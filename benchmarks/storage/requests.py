@@ -84,6 +84,7 @@ TIMED: Mapping[str, tuple[str, ...]] = {
     "/api/v1/motors/{name}/classification": _MOTOR,
     "/api/v1/motors/{name}/rotor/trend": _TREND,
     "/api/v1/motors/{name}/supply/trend": _TREND,
+    "/api/v1/motors/{name}/swings/trend": _TREND,
     "/api/v1/motors/{name}/starts": (*_MOTOR, "{busy}?limit=1000", "{busy}?cursor={deep}"),
     "/api/v1/motors/{name}/relay-events": (*_MOTOR, "{busy}?limit=1000", "{busy}?cursor={deep}"),
     "/api/v1/motors/{name}/load-profile": (*_MOTOR, "{busy}?days=1", "{busy}?days=90"),
@@ -109,6 +110,7 @@ TIMED: Mapping[str, tuple[str, ...]] = {
     "/api/v1/ieds/{name}/link-changes": (*_RELAY, "{busy_relay}?limit=1000", "{some_relay}?cursor={deep}"),
     "/api/v1/gateways": ("",),
     "/api/v1/job-runners": ("",),
+    "/api/v1/integrations": ("",),
     "/api/v1/alarms": (
         "",
         "?limit=1000",

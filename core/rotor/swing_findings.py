@@ -7,6 +7,8 @@ EVEN_GAP = 0.004
 """Ripple of the permeance of a sound motor, a tenth of static times a twentieth of dynamic eccentricity."""
 STEADY_LOAD = 0.004
 """Swing of a steady load's torque over the rated one, rms."""
+NOISE_RMS = 4.0
+"""Noise alone passes so many times its rms in one of ten thousand records of a thousand frequencies."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,6 +98,11 @@ class PulsationFinding(SwingFinding):
         What noise makes of it, rms, over rated torque.
     frequency_hz : float or None
         Its frequency [Hz].
+    load_torque_deviation : float or None
+        Standard deviation of the amplitude: noise, and the parameters of the model; the inertia is taken as
+        the motor's file has it.
+    detection_limit : float or None
+        Swing that nine of ten such records show, over rated torque.
     reasons : tuple of str
         What limits the figures, in words.
     """
@@ -103,3 +110,5 @@ class PulsationFinding(SwingFinding):
     load_torque: float | None = None
     noise: float | None = None
     frequency_hz: float | None = None
+    load_torque_deviation: float | None = None
+    detection_limit: float | None = None

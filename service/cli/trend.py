@@ -18,6 +18,10 @@ FIELDS = (
     "time", "value", "ci95", "scatter95", "detection_limit", "verdict", "state", "kind", "phase",
     "recording_id",
 )  # fmt: skip
+LIMITED_SWINGS: Final = ("gap_permeance_ripple", "swing_load_torque")
+"""Of these, records tell from when on they would be seen."""
+NORMAL_95: Final = 1.96
+"""Half of a 95 % interval over the standard deviation."""
 ROTOR_SEVERITY: Final = "rotor_severity_dB"
 SHARES_OF_SUPPLY: Final = (
     "voltage_deviation", "voltage_unbalance_iec", "voltage_unbalance_nema", "thd_voltage",
@@ -32,12 +36,22 @@ FIGURES_OF_SUPPLY: Final = {
     "power_factor": ".3f",
 }
 """The others, and how they are written."""
+SWINGS: Final = {
+    "gap_permeance_ripple": ("eccentricity", "permeance_ripple"),
+    "turn_load_torque": ("eccentricity", "load_torque"),
+    "swing_load_torque": ("pulsation", "load_torque"),
+    "swing_frequency_hz": ("pulsation", "frequency_hz"),
+}
+"""Of air gap and load: by the names that exports give them, the part and its figure."""
 CHANGES: Final = {
     f"{parameter}_change": parameter
     for parameter in ("stator_resistance", "rotor_resistance", "magnetising_inductance", "leakage_inductance")
 }
 """Changes of the parameters while the motor runs, by the names that exports give them."""
-IN_PERCENT: Final = ("mu_f", "condition_level", "change", *SHARES_OF_SUPPLY, *CHANGES)
+SHARES_OF_SWINGS: Final = tuple(name for name in SWINGS if not name.endswith("_hz"))
+IN_PERCENT: Final = (
+    "mu_f", "condition_level", "change", *SHARES_OF_SUPPLY, *CHANGES, *SHARES_OF_SWINGS,
+)  # fmt: skip
 
 
 def show_trend(
@@ -71,6 +85,8 @@ def _source(quantity: str) -> tuple[str, Callable[[Document], Document]]:
         return "rotor/trend", _rotor_point
     if quantity in CHANGES:
         return "parameters/trend", lambda one: _change_point(one, CHANGES[quantity])
+    if quantity in SWINGS:
+        return "swings/trend", lambda one: _swing_point(one, quantity)
     if quantity in (*SHARES_OF_SUPPLY, *FIGURES_OF_SUPPLY):
         return "supply/trend", lambda one: {
             **_place(one),
@@ -91,6 +107,21 @@ def _rotor_point(one: Document) -> Document:
     }
 
 
+def _swing_point(one: Document, quantity: str) -> Document:
+    """Return the point of a figure of air gap or load, with its interval where its deviation is told."""
+    part, figure = SWINGS[quantity]
+    found = one[part]
+    figures = found if isinstance(found, Mapping) else {}
+    point = {**_place(one), "value": figures.get(figure), "reasons": figures.get("reasons")}
+    deviation = figures.get("standard_deviation" if figure == "permeance_ripple" else f"{figure}_deviation")
+    value = point["value"]
+    if isinstance(value, int | float) and isinstance(deviation, int | float):
+        point["ci95"] = [max(0.0, value - NORMAL_95 * deviation), value + NORMAL_95 * deviation]
+    if quantity in LIMITED_SWINGS:
+        point["detection_limit"] = figures.get("detection_limit")
+    return point
+
+
 def _change_point(one: Document, parameter: str) -> Document:
     found = one[parameter]
     change = found if isinstance(found, Mapping) else {}
@@ -106,7 +137,7 @@ def _columns(quantity: str) -> dict[str, Column]:
         "time": lambda point: to_the_second(point["time"]),
         _heading(quantity): lambda point: _value(point, quantity),
     }
-    if quantity == "mu_f":
+    if quantity in ("mu_f", *LIMITED_SWINGS):
         columns["seen from %"] = lambda point: percent(point["detection_limit"])
     if quantity == ROTOR_SEVERITY:
         columns["seen from dB"] = lambda point: _decibels(point["detection_limit"])
@@ -131,6 +162,8 @@ def _value(point: Document, quantity: str) -> str:
         return _decibels(value) + (
             f" [{_decibels(ci95[0])}..{_decibels(ci95[1])}]" if isinstance(ci95, list) else ""
         )
+    if quantity == "swing_frequency_hz":
+        return f"{value:.3f}" if isinstance(value, int | float) else "-"
     if quantity in FIGURES_OF_SUPPLY:
         return format(value, FIGURES_OF_SUPPLY[quantity]) if isinstance(value, int | float) else "-"
     if quantity == "theta_f":

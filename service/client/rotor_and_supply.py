@@ -4,11 +4,14 @@ from math import sqrt
 
 from core.quantity_text import with_unit
 from core.rotor.finding import RotorFinding, RotorState
-from core.rotor.swing_findings import EVEN_GAP, STEADY_LOAD, EccentricityFinding, PulsationFinding
+from core.rotor.swing_findings import (
+    EVEN_GAP,
+    NOISE_RMS,
+    STEADY_LOAD,
+    EccentricityFinding,
+    PulsationFinding,
+)
 from core.supply.figures import SupplyFigures
-
-NOISE_RMS = 4.0
-"""Noise alone passes so many times its rms in one of ten thousand records of a thousand frequencies."""
 
 STATES = {
     RotorState.HEALTHY: "healthy",

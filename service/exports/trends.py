@@ -1,6 +1,6 @@
 """The table of trends: of each recording what it says by itself, and what is said of the motor from it on.
 
-What it says by itself is of the winding, the rotor and the supply.
+What it says by itself is of the winding, the rotor, the air gap and the load, and the supply.
 """
 
 from collections.abc import Iterator, Sequence
@@ -19,18 +19,19 @@ from service.storage.records import (
     DiagnosisPoint,
     RotorEntry,
     SupplyEntry,
+    SwingEntry,
     TrackedPoint,
 )
 from service.storage.repository import Repository
 
-_Point = DiagnosisPoint | ConditionPoint | RotorEntry | SupplyEntry | TrackedPoint
+_Point = DiagnosisPoint | ConditionPoint | RotorEntry | SupplyEntry | SwingEntry | TrackedPoint
 
 
 @dataclass(slots=True)
 class TrendRow:
     """A recording. diagnosed: None where a rule of retention deleted it.  said: None until it is folded.
 
-    rotor, supply: None where the recording shows nothing of them.  tracked: None until it is folded.
+    rotor, swings, supply: None where the recording shows nothing of them.  tracked: None until it is folded.
     """
 
     motor: str
@@ -39,6 +40,7 @@ class TrendRow:
     diagnosed: DiagnosisPoint | None = None
     said: ConditionPoint | None = None
     rotor: RotorFinding | None = None
+    swings: SwingEntry | None = None
     supply: SupplyFigures | None = None
     tracked: TrackedPoint | None = None
 
@@ -62,6 +64,24 @@ def _of_rotor(
 ) -> Column[TrendRow]:
     """Return a column of what the recording shows of the rotor; of: name of the figure there."""
     return Column(name, column_type, unit, meaning, lambda row: getattr(row.rotor, of, None))
+
+
+def _of_gap(name: str, meaning: str, of: str, *, unit: str = "1") -> Column[TrendRow]:
+    """Return a column of what the recording shows of the air gap; of: name of the figure there."""
+
+    def value(row: TrendRow) -> float | None:
+        return None if row.swings is None else getattr(row.swings.eccentricity, of)
+
+    return Column(name, ColumnType.NUMBER, unit, meaning, value)
+
+
+def _of_swing(name: str, meaning: str, of: str, *, unit: str = "1") -> Column[TrendRow]:
+    """Return a column of what the recording shows of a load that swings; of: name of the figure there."""
+
+    def value(row: TrendRow) -> float | None:
+        return None if row.swings is None else getattr(row.swings.pulsation, of)
+
+    return Column(name, ColumnType.NUMBER, unit, meaning, value)
 
 
 def _of_supply(name: str, meaning: str, *, unit: str = "1") -> Column[TrendRow]:
@@ -142,6 +162,17 @@ TABLE: Table[TrendRow] = Table(
             "load_oscillation_dB",
         ),
         _of_rotor("slip", "slip, from the fit", "slip", unit="1"),
+        _of_gap("gap_permeance_ripple", "ripple of the air gap's permeance, once a turn", "permeance_ripple"),
+        _of_gap("gap_permeance_ripple_deviation", "its standard deviation", "standard_deviation"),
+        _of_gap("gap_detection_limit", "ripple that nine of ten such recordings show", "detection_limit"),
+        _of_gap("turn_load_torque", "torque that swings once a turn, over the rated one", "load_torque"),
+        _of_gap("turn_load_torque_deviation", "its standard deviation", "load_torque_deviation"),
+        _of_gap("turn_frequency_hz", "turns of the shaft", "rotation_frequency_hz", unit="Hz"),
+        _of_swing("swing_load_torque", "other swing of the torque, over the rated one", "load_torque"),
+        _of_swing("swing_load_torque_deviation", "its standard deviation", "load_torque_deviation"),
+        _of_swing("swing_detection_limit", "swing that nine of ten such recordings show", "detection_limit"),
+        _of_swing("swing_noise", "what noise makes of it, rms", "noise"),
+        _of_swing("swing_frequency_hz", "frequency of that swing", "frequency_hz", unit="Hz"),
         _of_supply("frequency_hz", "frequency of the supply", unit="Hz"),
         _of_supply("voltage_deviation", "mean line voltage over the rated one, minus 1"),
         _of_supply("voltage_unbalance_iec", "unbalance of the voltages, |V2| / |V1|"),
@@ -171,11 +202,13 @@ def trends(
         said = pages(partial(repository.condition_trend, motor, from_ns=from_ns, to_ns=to_ns))
         rotor = pages(partial(repository.rotor_trend, motor, from_ns=from_ns, to_ns=to_ns))
         supply = pages(partial(repository.supply_trend, motor, from_ns=from_ns, to_ns=to_ns))
+        swings = pages(partial(repository.swing_trend, motor, from_ns=from_ns, to_ns=to_ns))
         tracked = pages(partial(repository.tracked_trend, motor, from_ns=from_ns, to_ns=to_ns))
         sources: list[Iterator[_Point]] = [
             chain.from_iterable(diagnosed),
             chain.from_iterable(said),
             chain.from_iterable(rotor),
+            chain.from_iterable(swings),
             chain.from_iterable(supply),
             chain.from_iterable(tracked),
         ]
@@ -197,6 +230,8 @@ def _joined(motor: str, points: Iterator[_Point]) -> Iterator[Sequence[TrendRow]
                     row.said = point
                 case RotorEntry():
                     row.rotor = point.finding
+                case SwingEntry():
+                    row.swings = point
                 case SupplyEntry():
                     row.supply = point.figures
                 case TrackedPoint():

@@ -65,7 +65,9 @@ ECCENTRIC_ROTOR = EccentricityFinding(
     rotation_frequency_hz=24.25,
 )
 
-SWINGING_LOAD = PulsationFinding(load_torque=0.0625, noise=0.001, frequency_hz=4.125)
+SWINGING_LOAD = PulsationFinding(
+    load_torque=0.0625, noise=0.001, frequency_hz=4.125, load_torque_deviation=0.0015, detection_limit=0.005
+)
 
 SUPPLY = SupplyFigures(
     frequency_hz=50.01,

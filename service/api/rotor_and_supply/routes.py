@@ -1,4 +1,4 @@
-"""What the recordings of a motor show of its rotor and its supply, over time."""
+"""What the recordings of a motor show of its rotor, its air gap and load, and its supply, over time."""
 
 from fastapi import APIRouter
 
@@ -9,10 +9,15 @@ from service.api.context import Context
 from service.api.document import Name
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
-from service.api.rotor_and_supply.schemas import RotorCondition, RotorTrendPoint, SupplyTrendPoint
+from service.api.rotor_and_supply.schemas import (
+    RotorCondition,
+    RotorTrendPoint,
+    SupplyTrendPoint,
+    SwingTrendPoint,
+)
 from service.api.rotor_and_supply.start_agreement import StartAgreement, start_agreement
 from service.api.times import From, To
-from service.storage.records import RotorEntry, SupplyEntry
+from service.storage.records import RotorEntry, SupplyEntry, SwingEntry
 
 router = APIRouter(prefix="/motors/{name}", tags=["condition"])
 
@@ -47,6 +52,21 @@ def list_rotor_trend(
     return page(found, _rotor_point)
 
 
+@router.get("/swings/trend", responses=problems(404), dependencies=[require(Permission.VIEW)])
+def list_swing_trend(
+    context: Context,
+    name: Name,
+    from_: From = None,
+    to: To = None,
+    limit: Limit = DEFAULT_LIMIT,
+    cursor: CursorText = None,
+) -> Page[SwingTrendPoint]:
+    """Return what each recording of a motor shows of its air gap and of a load that swings, oldest first."""
+    after = decode(cursor, int, str)
+    found = context.repository.swing_trend(name, from_ns=from_, to_ns=to, limit=limit, after=after)
+    return page(found, _swing_point)
+
+
 @router.get("/supply/trend", responses=problems(404), dependencies=[require(Permission.VIEW)])
 def list_supply_trend(
     context: Context,
@@ -78,6 +98,17 @@ def _of_start(found: StartAgreement | None) -> dict[str, object] | None:
 def _rotor_point(entry: RotorEntry) -> RotorTrendPoint:
     return RotorTrendPoint.model_validate(
         {**entry.finding.as_dict(), "time": entry.time_ns, "recording_id": entry.recording_id}
+    )
+
+
+def _swing_point(entry: SwingEntry) -> SwingTrendPoint:
+    return SwingTrendPoint.model_validate(
+        {
+            "time": entry.time_ns,
+            "recording_id": entry.recording_id,
+            "eccentricity": entry.eccentricity.as_dict(),
+            "pulsation": entry.pulsation.as_dict(),
+        }
     )
 
 

@@ -64,14 +64,27 @@ class EccentricityFinding(Document):
 class PulsationFinding(Document):
     """The strongest swing of the load's torque; figures are null where a recording cannot tell them.
 
-    load_torque: its amplitude over the rated torque. noise: what noise makes of it, rms. What swings once a
-    turn is told by the eccentricity, and at twice the slip by the rotor.
+    load_torque: its amplitude over the rated torque, with load_torque_deviation. noise: what noise makes of
+    it, rms. detection_limit: swing that nine of ten such recordings show. What swings once a turn is told by
+    the eccentricity, and at twice the slip by the rotor. Diagnoses of earlier versions have neither deviation
+    nor limit.
     """
 
     load_torque: float | None
     noise: float | None
     frequency_hz: float | None
+    load_torque_deviation: float | None = None
+    detection_limit: float | None = None
     reasons: Listed[str]
+
+
+class SwingTrendPoint(Document):
+    """What one recording of a motor shows of its air gap, and of a load that swings."""
+
+    time: Time
+    recording_id: str
+    eccentricity: EccentricityFinding
+    pulsation: PulsationFinding
 
 
 class RotorLoadBin(Document):

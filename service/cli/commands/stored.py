@@ -33,6 +33,7 @@ By = Annotated[str | None, typer.Option(metavar="NAME", help="Who says so (defau
 Quantity = Literal[
     "mu_f", "theta_f", "load_level", "condition_level", "change",
     "rotor_severity_dB",
+    "gap_permeance_ripple", "turn_load_torque", "swing_load_torque", "swing_frequency_hz",
     "frequency_hz", "voltage_deviation", "voltage_unbalance_iec", "voltage_unbalance_nema", "derating",
     "thd_voltage", "harmonic_voltage_factor", "current_unbalance", "thd_current", "active_power_W",
     "power_factor",
@@ -51,9 +52,10 @@ def trend(
     quantity: Annotated[
         Quantity,
         typer.Option(
-            help="mu_f, theta_f, load_level, rotor_severity_dB and the figures of the supply (frequency_hz "
-            "to power_factor) are what each recording says by itself; condition_level, change and those "
-            "that end with _change what is said of the motor from it on."
+            help="mu_f, theta_f, load_level, rotor_severity_dB, those of air gap and load "
+            "(gap_permeance_ripple to swing_frequency_hz) and of the supply (frequency_hz to power_factor) "
+            "are what each recording says by itself; condition_level, change and those that end with "
+            "_change what is said of the motor from it on."
         ),
     ] = "mu_f",
     from_: From = None,

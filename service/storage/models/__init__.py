@@ -51,6 +51,7 @@ from service.storage.models.relays import (
 from service.storage.models.rotor import RotorFindingRow
 from service.storage.models.starts import StartRow
 from service.storage.models.supply import SupplyFiguresRow
+from service.storage.models.swings import SwingFindingRow
 
 __all__ = [
     "AlarmChangeRow",
@@ -102,6 +103,7 @@ __all__ = [
     "StartRow",
     "StateCountRow",
     "SupplyFiguresRow",
+    "SwingFindingRow",
     "UnobservedRecordingRow",
     "UserRow",
     "UserSessionRow",

@@ -82,7 +82,13 @@ from service.storage.records.relays import (
     Quarantine,
     RelayFindings,
 )
-from service.storage.records.rotor_and_supply import RecordsBeyond, RotorEntry, SupplyEntry, SupplyQuantity
+from service.storage.records.rotor_and_supply import (
+    RecordsBeyond,
+    RotorEntry,
+    SupplyEntry,
+    SupplyQuantity,
+    SwingEntry,
+)
 from service.storage.records.starts import (
     ImportedStart,
     ReportedStart,
@@ -183,6 +189,7 @@ __all__ = [
     "StartReference",
     "SupplyEntry",
     "SupplyQuantity",
+    "SwingEntry",
     "ToObserve",
     "TrackedPoint",
     "TrendPoint",

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from core.rotor.finding import RotorFinding
+from core.rotor.swing_findings import EccentricityFinding, PulsationFinding
 from core.supply.figures import SupplyFigures
 
 
@@ -25,6 +26,17 @@ class SupplyEntry:
     motor: str
     time_ns: int
     figures: SupplyFigures
+
+
+@dataclass(frozen=True, slots=True)
+class SwingEntry:
+    """What a recording shows of its motor's air gap, and of a load that swings."""
+
+    recording_id: str
+    motor: str
+    time_ns: int
+    eccentricity: EccentricityFinding
+    pulsation: PulsationFinding
 
 
 class SupplyQuantity(StrEnum):

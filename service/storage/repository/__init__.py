@@ -24,6 +24,7 @@ from service.storage.repository.history.start_reference import StartReferenceRow
 from service.storage.repository.history.start_reports import StartReportRows
 from service.storage.repository.history.starts import StartRows
 from service.storage.repository.history.supply import SupplyRows
+from service.storage.repository.history.swings import SwingRows
 from service.storage.repository.history.thinned_trend import ThinnedTrendRows
 from service.storage.repository.jobs.notices import JobNoticeRows
 from service.storage.repository.jobs.queue import JobRows
@@ -77,6 +78,7 @@ class Repository(
     StartReportRows,
     RotorRows,
     SupplyRows,
+    SwingRows,
     AnswerRows,
     ThinnedTrendRows,
     NeighbourRows,

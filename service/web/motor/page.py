@@ -29,6 +29,7 @@ from service.web.motor.nameplate import KnownMotor, known_motor
 from service.web.motor.parameters import ParametersSection, parameters_section
 from service.web.motor.rotor import RotorSection, rotor_section
 from service.web.motor.supply import SupplySection, supply_section
+from service.web.motor.swings import SwingSection, swing_section
 from service.web.motor.trend import SPANS, TrendSpan, told, trend_chart
 from service.web.motor.verdict import MotorVerdict, motor_verdict
 
@@ -60,6 +61,7 @@ class MotorPage:
     answer: AnswerSection
     rotor: RotorSection
     supply: SupplySection
+    swings: SwingSection
     parameters: ParametersSection
     known: KnownMotor | None
     drawings: MotorDrawings | None
@@ -94,6 +96,7 @@ def motor_page(context: ApiContext, name: str, span: TrendSpan, now_ns: int) -> 
         rotor=rotor_section(repository, name, MachineKind.CAGE if known is None else known.motor.kind),
         answer=answer_section(repository, name),
         supply=supply_section(repository, name),
+        swings=swing_section(repository, name),
         parameters=parameters_section(repository, name),
         known=known,
         drawings=None

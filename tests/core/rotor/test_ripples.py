@@ -72,10 +72,15 @@ def test_two_poles_tell_nothing_of_the_gap() -> None:
 def test_a_swing_of_the_load_is_found_with_frequency_and_torque() -> None:
     swings = (Pulsation(0.06, frequency_Hz=7.3),)
     found = examine_pulsation(_baseband(MEDIUM, pulsations=swings), MEDIUM, even_rotor=True)
-    assert found.frequency_hz == pytest.approx(7.3, abs=0.1)
+    assert found.frequency_hz == pytest.approx(7.3, abs=0.01)
     assert found.load_torque == pytest.approx(0.06, rel=0.1)
     assert found.noise is not None
     assert found.noise < 0.01
+    assert found.load_torque is not None
+    assert found.load_torque_deviation is not None
+    assert abs(found.load_torque - 0.06) < 1.96 * found.load_torque_deviation
+    assert found.detection_limit is not None
+    assert 4.0 * found.noise < found.detection_limit < 0.03
 
 
 def test_a_steady_load_does_not_swing() -> None:

@@ -19,7 +19,14 @@ from service.storage import Repository
 from testing.service.conditions import FAULT, tell
 from testing.service.job_runner import RUNNER
 from testing.service.plants import NOW_NS, SECOND_NS, fault, healthy, motor
-from testing.service.rotor_and_supply import BROKEN_ROTOR, SHORT_RECORD, SUPPLY, ExaminedRecordings
+from testing.service.rotor_and_supply import (
+    BROKEN_ROTOR,
+    ECCENTRIC_ROTOR,
+    SHORT_RECORD,
+    SUPPLY,
+    SWINGING_LOAD,
+    ExaminedRecordings,
+)
 from testing.service.small_record import CFG, DAT
 from testing.service.starts import START, RecordedStarts
 from tests.core.relay_reports.examples import LDP, MOT, MSR, SER
@@ -190,6 +197,35 @@ def test_the_trend_of_the_supply(
     assert (point["value"], point["recording_id"]) == (getattr(SUPPLY, quantity), recording)
     [row] = rows(mcc("trend", "PUMP-A1", "--quantity", quantity, "--csv"))
     assert float(row["value"]) == getattr(SUPPLY, quantity)
+
+
+@pytest.mark.parametrize(
+    ("quantity", "heading", "shown", "value"),
+    [
+        ("gap_permeance_ripple", "gap permeance ripple % seen from %", "5.25 [4.86..5.64] 0.75", 0.0525),
+        ("turn_load_torque", "turn load torque %", "0.10 [0.00..0.49]", 0.001),
+        ("swing_load_torque", "swing load torque % seen from %", "6.25 [5.96..6.54] 0.50", 0.0625),
+        ("swing_frequency_hz", "swing frequency Hz", "4.125", 4.125),
+    ],
+)
+def test_the_trend_of_air_gap_and_load(
+    mcc: Mcc,
+    repository: Repository,
+    store: RecordingStore,
+    quantity: str,
+    heading: str,
+    shown: str,
+    value: float,
+) -> None:
+    recorded = ExaminedRecordings(repository, store)
+    recording = recorded.add(SHORT_RECORD, eccentricity=ECCENTRIC_ROTOR, pulsation=SWINGING_LOAD)
+    table = " ".join(mcc("trend", "PUMP-A1", "--quantity", quantity).split())
+    assert f"time {heading} recording" in table
+    assert f" UTC {shown} {recording}" in table
+    [point] = json.loads(mcc("trend", "PUMP-A1", "--quantity", quantity, "--json"))["points"]
+    assert (point["value"], point["recording_id"]) == (value, recording)
+    [row] = rows(mcc("trend", "PUMP-A1", "--quantity", quantity, "--csv"))
+    assert float(row["value"]) == value
 
 
 @pytest.mark.parametrize("words", [("recordings",), ("recordings", "list")])

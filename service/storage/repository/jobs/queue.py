@@ -39,6 +39,7 @@ from service.storage.repository.conditions.observations import keep_observation
 from service.storage.repository.history.rotor import keep_rotor_finding
 from service.storage.repository.history.starts import keep_start
 from service.storage.repository.history.supply import keep_supply
+from service.storage.repository.history.swings import keep_swings
 from service.storage.repository.jobs.locks import lock_motor_of
 from service.storage.repository.jobs.steps import end_job, give_up_job, is_held, release, retry_or_give_up
 from service.storage.repository.recordings.baselines import baseline_rows
@@ -224,6 +225,8 @@ class JobRows(Sessions):
             counts = left_out is None
             tells_of_rotor = counts and diagnosis.verdict is not Verdict.UNDIAGNOSABLE
             keep_rotor_finding(*shown, rotor if tells_of_rotor else None, is_first=is_first)
+            swings = (eccentricity, pulsation) if tells_of_rotor else (None, None)
+            keep_swings(*shown, *swings, is_first=is_first)
             keep_supply(*shown, supply if counts else None, is_first=is_first)
             if diagnosis.operation in AT_REST:
                 note_standstill(session, recording.motor, min(recorded_ns, now_ns))

@@ -38,6 +38,7 @@ from service.storage.repository.conditions.observations import forget_observatio
 from service.storage.repository.history.rotor import forget_rotor_finding
 from service.storage.repository.history.starts import forget_start
 from service.storage.repository.history.supply import forget_supply
+from service.storage.repository.history.swings import forget_swings
 from service.storage.repository.recordings.folders import discard_folder, lock_folder
 from service.storage.repository.recordings.recordings import stored_before
 from service.storage.repository.recordings.requests import KIND, fail_row, fail_rows
@@ -245,6 +246,7 @@ def delete_row(
         forget_start(session, row.id)
         forget_rotor_finding(session, row.id)
         forget_supply(session, row.id)
+        forget_swings(session, row.id)
     session.execute(delete(DiagnosisRow).where(DiagnosisRow.recording_id == row.id))
     session.execute(delete(RecordingFileRow).where(RecordingFileRow.recording_id == row.id))
     for job in session.scalars(_jobs_of(row.id)):

@@ -28,7 +28,13 @@ from testing.service.conditions import FAULT, tell
 from testing.service.diagnosed import add_diagnosed
 from testing.service.observations import observation
 from testing.service.plants import NOW_NS, SECOND_NS, fault, undiagnosable
-from testing.service.rotor_and_supply import BROKEN_ROTOR, SUPPLY, ExaminedRecordings
+from testing.service.rotor_and_supply import (
+    BROKEN_ROTOR,
+    ECCENTRIC_ROTOR,
+    SUPPLY,
+    SWINGING_LOAD,
+    ExaminedRecordings,
+)
 from testing.service.starts import START, RecordedStarts
 from tests.service.api.serving import serving
 
@@ -126,7 +132,7 @@ def test_a_trend_has_what_is_shown_of_rotor_and_supply(
     client: httpx.Client, repository: Repository, store: RecordingStore, accept: str
 ) -> None:
     recorded = ExaminedRecordings(repository, store)
-    recorded.add(BROKEN_ROTOR, SUPPLY)
+    recorded.add(BROKEN_ROTOR, SUPPLY, eccentricity=ECCENTRIC_ROTOR, pulsation=SWINGING_LOAD)
     recorded.add(None)
     first, second = read(client.get(TREND, headers={"Accept": accept}))
     figures = {
@@ -134,7 +140,11 @@ def test_a_trend_has_what_is_shown_of_rotor_and_supply(
         "rotor_lower_sideband_dB": -35.5, "rotor_upper_sideband_dB": -41.0, "load_oscillation_dB": -60.0,
         "slip": 0.031, "frequency_hz": 50.01, "voltage_unbalance_nema": 0.0068, "thd_voltage": 0.021,
         "derating": 1.0, "harmonic_voltage_factor": 0.0085, "current_unbalance": 0.02, "thd_current": 0.035,
-        "active_power_W": 612.5, "power_factor": 0.61,
+        "active_power_W": 612.5, "power_factor": 0.61, "gap_permeance_ripple": 0.0525,
+        "gap_permeance_ripple_deviation": 0.002, "gap_detection_limit": 0.0075, "turn_load_torque": 0.001,
+        "turn_load_torque_deviation": 0.002, "turn_frequency_hz": 24.25, "swing_load_torque": 0.0625,
+        "swing_load_torque_deviation": 0.0015, "swing_detection_limit": 0.005, "swing_noise": 0.001,
+        "swing_frequency_hz": 4.125,
     }  # fmt: skip
     assert first["rotor_state"] == "fault"
     assert {name: float(first[name]) for name in figures} == figures

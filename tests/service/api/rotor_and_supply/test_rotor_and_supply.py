@@ -14,9 +14,11 @@ from service.storage import Repository
 from testing.service.plants import NOW_NS, SECOND_NS
 from testing.service.rotor_and_supply import (
     BROKEN_ROTOR,
+    ECCENTRIC_ROTOR,
     SHORT_RECORD,
     SOUND_ROTOR,
     SUPPLY,
+    SWINGING_LOAD,
     ExaminedRecordings,
 )
 from testing.service.starts import START, RecordedStarts
@@ -118,3 +120,19 @@ def test_a_start_stands_beside_what_the_running_motor_shows(
     found = client.get(f"{MOTOR}/rotor").json()["start"]
     assert found["agrees"] is False
     assert "they do not agree" in found["words"]
+
+
+def test_the_trend_of_air_gap_and_load(client: httpx.Client, recorded: ExaminedRecordings) -> None:
+    recording = recorded.add(SOUND_ROTOR, eccentricity=ECCENTRIC_ROTOR, pulsation=SWINGING_LOAD)
+    assert client.get(f"{MOTOR}/swings/trend").json() == {
+        "items": [
+            {
+                "time": rfc3339(NOW_NS + SECOND_NS),
+                "recording_id": recording,
+                "eccentricity": ECCENTRIC_ROTOR.as_dict(),
+                "pulsation": SWINGING_LOAD.as_dict(),
+            }
+        ],
+        "next_cursor": None,
+    }
+    assert client.get("/api/v1/motors/PUMP-A/swings/trend").status_code == 404

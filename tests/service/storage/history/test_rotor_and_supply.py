@@ -1,9 +1,10 @@
-"""What recordings show of rotor and supply: kept with the diagnosis, replaced by another, listed in pages."""
+"""What recordings show of rotor, air gap, load and supply: kept with the diagnosis, replaced, listed."""
 
 from dataclasses import replace
 
 import pytest
 
+from core.rotor.swing_findings import EccentricityFinding
 from service.recording_store.store import RecordingStore
 from service.storage import NotFoundError, Repository
 from service.storage.records import Actor
@@ -11,9 +12,11 @@ from service.storage.states import DeletedBy
 from testing.service.plants import NOW_NS, SECOND_NS, undiagnosable
 from testing.service.rotor_and_supply import (
     BROKEN_ROTOR,
+    ECCENTRIC_ROTOR,
     SHORT_RECORD,
     SOUND_ROTOR,
     SUPPLY,
+    SWINGING_LOAD,
     ExaminedRecordings,
 )
 
@@ -108,3 +111,39 @@ def test_there_is_no_such_motor(repository: Repository) -> None:
     for trend in (repository.rotor_trend, repository.supply_trend):
         with pytest.raises(NotFoundError, match="PUMP-A1"):
             trend("PUMP-A", limit=10)
+
+
+def test_what_records_show_of_air_gap_and_load_is_a_trend(recorded: ExaminedRecordings) -> None:
+    untold = EccentricityFinding.untold("the record holds 3.1 turns of the shaft: too few")
+    recorded.add(SOUND_ROTOR)  # neither was looked for
+    first = recorded.add(SOUND_ROTOR, eccentricity=ECCENTRIC_ROTOR, pulsation=SWINGING_LOAD)
+    second = recorded.add(SHORT_RECORD, eccentricity=untold, pulsation=SWINGING_LOAD)
+    recorded.add(SOUND_ROTOR, eccentricity=untold, pulsation=SWINGING_LOAD, left_out="its time lies ahead")
+    recorded.add(SOUND_ROTOR, eccentricity=untold, pulsation=SWINGING_LOAD, diagnosis=undiagnosable())
+    repository = recorded.repository
+    trend = repository.swing_trend("PUMP-A1", limit=10).items
+    assert [(one.recording_id, one.eccentricity, one.pulsation) for one in trend] == [
+        (first, ECCENTRIC_ROTOR, SWINGING_LOAD),
+        (second, untold, SWINGING_LOAD),
+    ]
+    assert repository.latest_swings("PUMP-A1", limit=1) == trend[1:]
+    page = repository.swing_trend("PUMP-A1", limit=1)
+    assert repository.swing_trend("PUMP-A1", limit=1, after=page.next).items == trend[1:]
+
+
+def test_another_diagnosis_or_a_person_takes_what_was_found_of_air_gap_and_load(
+    recorded: ExaminedRecordings,
+) -> None:
+    repository = recorded.repository
+    found = {"eccentricity": ECCENTRIC_ROTOR, "pulsation": SWINGING_LOAD}
+    again = recorded.add(SOUND_ROTOR, eccentricity=ECCENTRIC_ROTOR, pulsation=SWINGING_LOAD)
+    wrong = recorded.add(SOUND_ROTOR, eccentricity=ECCENTRIC_ROTOR, pulsation=SWINGING_LOAD)
+    old = recorded.add(SOUND_ROTOR, eccentricity=ECCENTRIC_ROTOR, pulsation=SWINGING_LOAD)
+    recorded.diagnose_again(again, SOUND_ROTOR)
+    repository.delete_recording(wrong, "another motor's", by=PERSON, now_ns=NOW_NS)
+    repository.delete_recording(old, "a rule", now_ns=NOW_NS, deleted_by=DeletedBy.RETENTION)
+    (kept,) = repository.swing_trend("PUMP-A1", limit=10).items
+    assert (kept.recording_id, {"eccentricity": kept.eccentricity, "pulsation": kept.pulsation}) == (
+        old,
+        found,
+    )

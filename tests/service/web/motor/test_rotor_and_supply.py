@@ -15,9 +15,11 @@ from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from testing.service.rotor_and_supply import (
     BROKEN_ROTOR,
+    ECCENTRIC_ROTOR,
     SHORT_RECORD,
     SOUND_ROTOR,
     SUPPLY,
+    SWINGING_LOAD,
     ExaminedRecordings,
 )
 from testing.service.starts import START, RecordedStarts
@@ -108,3 +110,21 @@ def test_the_start_is_told_beside_the_running_motor(
     document = page(client.get(HERE))
     assert "they do not agree: running, it says fault" in " ".join(words(document, "#rotor p"))
     assert document.cssselect(f'#rotor a[href="/recordings/{start}"]')
+
+
+def test_air_gap_and_load_are_told_where_they_stand_out(
+    client: httpx.Client, recorded: ExaminedRecordings
+) -> None:
+    assert "No record tells of the air gap" in " ".join(words(page(client.get(HERE)), "#swings"))
+    quiet = replace(ECCENTRIC_ROTOR, permeance_ripple=0.001)
+    still = replace(SWINGING_LOAD, load_torque=0.001)
+    recorded.add(SOUND_ROTOR, eccentricity=quiet, pulsation=still)
+    assert "Neither the air gap nor the load stands out" in " ".join(words(page(client.get(HERE)), "#swings"))
+    recorded.add(SOUND_ROTOR, eccentricity=ECCENTRIC_ROTOR, pulsation=SWINGING_LOAD)
+    document = page(client.get(HERE))
+    told = " ".join(words(document, "#swings"))
+    assert "air gap: permeance ripples by 5.25 % (+-0.39 %) once a turn; 0.75 % would be told" in told
+    assert "load: torque swings by 6.25 % of the rated one at 4.12 Hz" in told
+    drawn = chart(document, "swings")
+    assert drawn["series"][0]["values"] == [0.1, 5.25]
+    assert drawn["series"][3]["values"] == [0.1, 6.25]

@@ -1,0 +1,68 @@
+"""The air gap and the load of a motor on its page: as the latest record shows them, and over time."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from core.units import NANOSECONDS_PER_SECOND
+from service.client.rotor_and_supply import gap_words, swing_words
+from service.storage import Repository
+from service.storage.records import SwingEntry
+from service.web.charts import Chart, Kind, Series, Tone
+from service.web.charts.chart import AxisKind
+
+MOST_RECORDS: Final = 400
+"""The latest records that the chart shows."""
+PERCENT: Final = 100.0
+DIGITS: Final = 3
+
+
+@dataclass(frozen=True, slots=True)
+class SwingSection:
+    """What the page says of air gap and load. words: what stands out. chart: None where no record tells."""
+
+    latest: SwingEntry | None
+    words: Sequence[str]
+    reasons: Sequence[str]
+    chart: Chart | None
+
+
+def swing_section(repository: Repository, motor: str) -> SwingSection:
+    """Read what the page says of a motor's air gap and of a load that swings."""
+    entries = repository.latest_swings(motor, limit=MOST_RECORDS)
+    if not entries:
+        return SwingSection(None, (), (), None)
+    latest = entries[-1]
+    gap = gap_words(latest.eccentricity)
+    words = ([] if gap is None else [f"air gap: {gap}"]) + [
+        f"load: {one}" for one in swing_words(latest.eccentricity, latest.pulsation)
+    ]
+    reasons = (*latest.eccentricity.reasons, *latest.pulsation.reasons)
+    return SwingSection(latest, words, reasons, _chart(motor, entries))
+
+
+def _chart(motor: str, entries: Sequence[SwingEntry]) -> Chart:
+    lines = (
+        ("ripple of the air gap", [one.eccentricity.permeance_ripple for one in entries], Tone.ACCENT),
+        ("ripple that would be told", [one.eccentricity.detection_limit for one in entries], Tone.MUTED),
+        ("torque once a turn", [one.eccentricity.load_torque for one in entries], Tone.INK),
+        ("strongest other swing of the torque", [one.pulsation.load_torque for one in entries], Tone.MODEL),
+    )
+    return Chart(
+        key="swings",
+        caption=f"Air gap and load of {motor}",
+        x_label="time",
+        y_label="share",
+        y_unit="%",
+        x_kind=AxisKind.TIME,
+        x=[round(one.time_ns / NANOSECONDS_PER_SECOND, 3) for one in entries],
+        series=[
+            Series(label, [_percent(value) for value in values], "%", tone, Kind.LINE)
+            for label, values, tone in lines
+        ],
+        summary=f"{len(entries)} record{'s' if len(entries) > 1 else ''}.",
+    )
+
+
+def _percent(share: float | None) -> float | None:
+    return None if share is None else round(PERCENT * share, DIGITS)
