@@ -1,9 +1,11 @@
 """How often causes and broken bars are told rightly from starts: python -m benchmarks.starts [PART] [N]."""
 
+import os
 import sys
 from collections.abc import Callable
 
-from benchmarks.starts import cages, causes
+from benchmarks.processes import worker_processes
+from benchmarks.starts import alarms, cages, causes
 from core.rotor.finding import RotorState
 
 OUTCOMES = ("right", "partly", "not told apart", "missed", "wrong")
@@ -33,15 +35,30 @@ def print_cages(repeats: int) -> None:
         )
 
 
+def print_alarms(lives: int) -> None:
+    """Print what the alarm of changed starts says over lives."""
+    with worker_processes(os.cpu_count() or 1) as pool:
+        for line in alarms.lines(pool, lives=lives):
+            print(line, flush=True)
+
+
 PARTS: dict[str, tuple[Callable[[int], None], int]] = {
     "causes": (print_causes, 6),
     "cages": (print_cages, 20),
+    "alarms": (print_alarms, 6),
 }
 
-wanted = sys.argv[1:2] or list(PARTS)
-for name in wanted:
-    if name not in PARTS:
-        sys.exit(f"part: expected one of {', '.join(PARTS)}, found {name}")
-    measure, usual = PARTS[name]
-    measure(int(sys.argv[2]) if len(sys.argv) > 2 else usual)
-    print()
+
+def main() -> None:
+    """Print the tables of the part that the command line names, or of all."""
+    wanted = sys.argv[1:2] or list(PARTS)
+    for name in wanted:
+        if name not in PARTS:
+            sys.exit(f"part: expected one of {', '.join(PARTS)}, found {name}")
+        measure, usual = PARTS[name]
+        measure(int(sys.argv[2]) if len(sys.argv) > 2 else usual)
+        print()
+
+
+if __name__ == "__main__":
+    main()

@@ -12,7 +12,6 @@ from service.api.document import Name
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
 from service.api.starts.schemas import StartDetails, StartSummary
-from service.api.starts.within_hour import within_hour
 from service.storage.records import StartEntry, StartReference
 
 router = APIRouter(prefix="/motors/{name}/starts", tags=["motors"])
@@ -25,7 +24,7 @@ def list_starts(
     """Return the starts of a motor, latest first, each beside the reference."""
     found = context.repository.starts(name, limit=limit, after=decode(cursor, int, str))
     reference = context.repository.start_reference(name)
-    counts = within_hour(context.repository, found.items)
+    counts = context.repository.starts_within_hour(found.items)
     return page(
         found,
         lambda entry: StartSummary.model_validate(_summary(entry, reference, counts[entry.recording_id])),
@@ -37,7 +36,7 @@ def get_start(context: Context, name: Name, recording_id: UUID) -> StartDetails:
     """Return one start with its curves, and what the motor's model tells of it."""
     entry = context.repository.start(name, str(recording_id))
     reference = context.repository.start_reference(name)
-    counts = within_hour(context.repository, [entry])
+    counts = context.repository.starts_within_hour([entry])
     return StartDetails.model_validate(
         _summary(entry, reference, counts[entry.recording_id])
         | entry.filled.model_as_dict()

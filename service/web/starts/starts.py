@@ -9,7 +9,6 @@ from markupsafe import Markup
 from core.starts.compared import StartChanges
 from service.alarms.start_rules import LATEST
 from service.api.pages import decode, encode
-from service.api.starts.within_hour import within_hour
 from service.pictures.looks import PAGE, Look
 from service.pictures.starts import StartLine, starts_picture
 from service.storage import Repository
@@ -83,7 +82,7 @@ def starts_of_motor(
     page = repository.starts(motor, limit=MOST_LISTED, after=decode(cursor, int, str))
     first_ones = repository.start_reference(motor)
     reference = first_ones.starts[0] if first_ones.starts else None
-    counts = within_hour(repository, page.items)
+    counts = repository.starts_within_hour(page.items)
     latest = page.items if cursor is None else repository.starts(motor, limit=OVERLAID).items
     drawn = [one for one in latest[:OVERLAID] if one.start.is_from_rest and one != reference]
     drawn.reverse()

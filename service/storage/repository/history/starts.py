@@ -1,7 +1,9 @@
 """Starts: recorded ones are kept with the diagnosis of their recording; all are listed."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from itertools import groupby
 from math import isfinite
+from operator import attrgetter
 
 from sqlalchemy import delete, exists, func, select
 from sqlalchemy.orm import Session
@@ -9,6 +11,7 @@ from sqlalchemy.orm import Session
 from core.operation import Operation
 from core.starts.examined import ExaminedStart
 from core.starts.figures import MotorStart
+from core.starts.stress import HOUR_NS, starts_within_hour
 from service.storage.errors import NotFoundError
 from service.storage.models import MotorRow, RecordingRow, StartRow
 from service.storage.records import Cursor, Page, StartEntry
@@ -50,6 +53,17 @@ class StartRows(Sessions):
         )
         with self._read() as session:
             return session.scalars(query).all()
+
+    def starts_within_hour(self, entries: Sequence[StartEntry]) -> Mapping[str, int]:
+        """Return how many starts their motor had in the hour up to each of these, by id."""
+        counts: dict[str, int] = {}
+        motor_of = attrgetter("motor")
+        for motor, of_motor in groupby(sorted(entries, key=motor_of), key=motor_of):
+            together = list(of_motor)
+            times = [one.time_ns for one in together]
+            known = self.times_of_starts(motor, from_ns=min(times) - HOUR_NS, to_ns=max(times))
+            counts |= {one.recording_id: starts_within_hour(known, one.time_ns) for one in together}
+        return counts
 
     def unmeasured_starts(self, motor: str | None = None) -> int:
         """Return how many stored recordings of starts have no figures: those of earlier versions."""

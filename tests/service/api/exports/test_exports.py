@@ -12,6 +12,7 @@ import openpyxl
 import pytest
 from pyarrow import parquet
 
+from core.starts.changes import REFERENCE_STARTS
 from core.starts.examining import examine_start
 from service.api import ApiContext, create_app
 from service.api.exports import answers
@@ -177,6 +178,25 @@ def test_starts_have_what_the_model_tells(
     assert (float(bare["acceleration_s"]), float(bare["i2t_A2s"])) == (1.25, 333.5)
     assert int(bare["is_from_rest"]) == 1
     assert not any(bare[one] for one in ("rotor_state", "load_torque_Nm", name, "share_of_hot_limit"))
+
+
+def test_starts_are_told_beside_the_first_ones_and_within_their_hour(
+    client: httpx.Client, repository: Repository, store: RecordingStore
+) -> None:
+    recorded = RecordedStarts(repository, store)
+    for _ in range(REFERENCE_STARTS):
+        recorded.add(START)
+    recorded.add(replace(START, acceleration_s=2.5))
+    latest, *earlier = read(client.get(f"{EXPORTS}/starts", params={"motor": "PUMP-A1"}))
+    told = client.get("/api/v1/motors/PUMP-A1/starts").json()["items"][0]
+    assert latest["comparison"] == told["comparison"]["state"] == "not-told-apart"
+    assert latest["possible_causes"].split() == told["comparison"]["possible"]
+    change = told["comparison"]["changes"]["acceleration"]
+    assert float(latest["acceleration_change"]) == pytest.approx(change["change"])
+    assert float(latest["acceleration_change_ci95_low"]) == pytest.approx(change["ci95"][0])
+    assert int(latest["starts_within_hour"]) == told["starts_within_hour"] == REFERENCE_STARTS + 1
+    assert not any(row["comparison"] for row in earlier)
+    assert [int(row["starts_within_hour"]) for row in earlier] == [*range(REFERENCE_STARTS, 0, -1)]
 
 
 def test_several_motors_or_all_in_one_file(client: httpx.Client, trend: Sequence[str]) -> None:
