@@ -17,13 +17,19 @@ from service.supervision.child import begin_child
 Run = Callable[[GatewayContext], None]
 
 
+def _iec61850() -> Run:
+    from service.gateways.iec61850.gateway import run
+
+    return run
+
+
 def _modbus() -> Run:
     from service.gateways.modbus.gateway import run
 
     return run
 
 
-KINDS: Mapping[str, Callable[[], Run]] = {"modbus": _modbus}
+KINDS: Mapping[str, Callable[[], Run]] = {"iec61850": _iec61850, "modbus": _modbus}
 """Each loads its gateway, with its library, in its own process alone."""
 
 

@@ -9,9 +9,9 @@ import struct
 from collections.abc import Mapping, Sequence
 from typing import Final
 
-from core.condition.kinds import Kind, State
-from core.rotor.finding import RotorState
+from core.condition.kinds import State
 from core.units import NANOSECONDS_PER_SECOND
+from service.gateways.kind_codes import KIND_CODES, ROTOR_CODES
 from service.gateways.plant_state.device_health import DeviceHealth
 from service.gateways.plant_state.figures import MotorFigures, PlantState, Quality
 from service.storage.states import AlarmPriority, LinkState
@@ -23,17 +23,6 @@ MOST_MOTORS: Final = 2000
 REGISTERS: Final = FIRST_BLOCK + BLOCK * MOST_MOTORS
 
 STATES: Final = (State.UNKNOWN, State.HEALTHY, State.WATCH, State.FAULT)
-KINDS: Final = (
-    Kind.NONE,
-    Kind.SHORTED_TURNS,
-    Kind.VOLTAGE_CHANNEL,
-    Kind.CURRENT_CHANNEL,
-    Kind.CONNECTION,
-    Kind.SUPPLY,
-    Kind.PARAMETERS,
-    Kind.ROTOR,
-    Kind.UNCLEAR,
-)
 PHASES: Final = (None, "a", "b", "c")
 HEALTHS: Final = (
     DeviceHealth.NORMAL,
@@ -45,7 +34,6 @@ HEALTHS: Final = (
 """Numbered as OPC UA for Devices does."""
 
 QUALITIES: Final = (Quality.GOOD, Quality.UNCERTAIN, Quality.BAD)
-ROTORS: Final = (None, RotorState.WATCH, RotorState.FAULT)
 PRIORITIES: Final = (
     None,
     AlarmPriority.LOW,
@@ -93,11 +81,11 @@ def _block(motor: MotorFigures, state: PlantState) -> list[int]:
     low, high = motor.mu_f_ci95 or (None, None)
     packed = _BLOCK.pack(
         STATES.index(motor.state),
-        KINDS.index(motor.kind),
+        KIND_CODES.index(motor.kind),
         PHASES.index(motor.phase),
         HEALTHS.index(motor.device_health),
         QUALITIES.index(motor.quality),
-        ROTORS.index(motor.rotor) if motor.rotor in ROTORS else 0,
+        ROTOR_CODES.index(motor.rotor) if motor.rotor in ROTOR_CODES else 0,
         int(motor.stale),
         min(motor.alarms, LARGEST),
         PRIORITIES.index(motor.priority),

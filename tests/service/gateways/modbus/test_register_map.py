@@ -4,6 +4,7 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
+from service.gateways.kind_codes import KIND_CODES, ROTOR_CODES
 from service.gateways.modbus import register_map
 from service.gateways.modbus.register_map import BLOCK, FIRST_BLOCK
 
@@ -24,11 +25,11 @@ def test_the_page_has_the_codes() -> None:
     block = rows("block")
     codes = {
         "0": register_map.STATES,
-        "1": register_map.KINDS,
+        "1": KIND_CODES,
         "2": register_map.PHASES,
         "3": register_map.HEALTHS,
         "4": register_map.QUALITIES,
-        "5": register_map.ROTORS,
+        "5": ROTOR_CODES,
         "8": register_map.PRIORITIES,
         "9": register_map.LINKS,
     }

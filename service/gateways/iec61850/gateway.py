@@ -1,0 +1,148 @@
+"""The IEC 61850 gateway: follows the plant's state and offers it as the data of an IED."""
+
+import os
+from importlib.metadata import version
+from pathlib import Path
+
+import structlog
+
+import scl
+from mms import Identity, Server, ServerStartFailed, TlsConfiguration, filter_tls_log_from_stderr, read_secret
+from scl.model_text import model_text
+from service.configuration.gateways.iec61850 import Iec61850Settings
+from service.gateways.context import GatewayContext
+from service.gateways.iec61850.description import description
+from service.gateways.iec61850.logical_devices import PLANT, logical_devices
+from service.gateways.iec61850.values import meanings, motor_values, names, plant_values, unknown_values
+from service.gateways.plant_state.figures import PlantChange, PlantState
+
+log = structlog.get_logger(__name__)
+
+DESCRIPTION = "statorwatch.icd"
+"""File in the data directory, with which other systems are engineered."""
+
+LOOK_S = 1.0
+"""Longest wait for a change before it is seen whether the service is gone."""
+
+
+def run(context: GatewayContext) -> None:
+    """Serve until the service is gone."""
+    settings = context.settings.gateways.iec61850
+    assert settings is not None  # noqa: S101 - it was started for them
+    if settings.tls is not None:
+        filter_tls_log_from_stderr()
+    follower = context.follower()
+    ied = PlantIed(settings, context.settings.data_directory)
+    try:
+        while not context.stop.is_set():
+            change = follower.next_change(context.stop, longest_s=LOOK_S)
+            if change is not None or not ied.is_running:
+                ied.tell(change)
+            context.tell(ied.problem or follower.problem)
+    finally:
+        ied.stop()
+        follower.close()
+
+
+class PlantIed:
+    """The service as an IED. Its data model is that of the motors in service; others make it begin anew."""
+
+    def __init__(self, settings: Iec61850Settings, data_directory: Path) -> None:
+        self._settings = settings
+        self._file = data_directory / DESCRIPTION
+        self._server: Server | None = None
+        self._state = PlantState()
+        self._devices: dict[str, str] = {}
+        self.problem: str | None = None
+
+    @property
+    def is_running(self) -> bool:
+        """Whether clients are served."""
+        return self._server is not None
+
+    def tell(self, change: PlantChange | None) -> None:
+        """Offer a change; None tries again to begin."""
+        if change is not None:
+            self._state = change.now
+        if self._state.read_ns == 0:
+            return  # nothing is known of the plant yet, not even its motors
+        if change is not None and self._devices.keys() == change.now.motors.keys() and self.is_running:
+            self._update(change)
+        else:
+            self._begin()
+
+    def stop(self) -> None:
+        """End every connection."""
+        server, self._server = self._server, None
+        if server is not None:
+            server.stop()
+
+    def _begin(self) -> None:
+        self.stop()
+        self._devices = dict(logical_devices(self._state.motors))
+        server = self._built()
+        for motor, device in self._devices.items():
+            figures = self._state.motors[motor]
+            relay = self._state.relays.get(figures.relay)
+            vendor, model = ("", "") if relay is None else (relay.manufacturer, relay.type)
+            path = self._path(device)
+            server.update_many(names(path, motor, vendor, model, version("statorwatch")))
+            server.update_many(meanings(path) | unknown_values(path))
+            server.update_many(motor_values(path, figures, relay))
+        plant = self._path(PLANT)
+        server.update_many(names(plant, "The plant", "StatorWatch", "service", version("statorwatch")))
+        server.update_many(plant_values(plant, self._state))
+        try:
+            server.start()
+        except ServerStartFailed as error:
+            server.stop()
+            self.problem = str(error)
+            return
+        self._server, self.problem = server, None
+        log.info("serving IEC 61850", port=self._settings.port, logical_devices=1 + len(self._devices))
+
+    def _update(self, change: PlantChange) -> None:
+        assert self._server is not None  # noqa: S101 - asked before
+        relays = {relay.name for relay in change.relays}
+        told = {motor.name for motor in change.motors}
+        for name, motor in change.now.motors.items():
+            if name in told or motor.relay in relays:
+                relay = change.now.relays.get(motor.relay)
+                self._server.update_many(motor_values(self._path(self._devices[name]), motor, relay))
+        self._server.update_many(plant_values(self._path(PLANT), change.now))
+
+    def _built(self) -> Server:
+        """Write the description, and make a server of it."""
+        settings = self._settings
+        texts = {device: motor for motor, device in self._devices.items()}
+        revision = version("statorwatch")
+        _write(self._file, description(settings.ied_name, texts, plant=PLANT, revision=revision))
+        tls: TlsConfiguration | None = None if settings.tls is None else settings.tls.configuration()
+        passwords = [] if settings.password_file is None else [_password(settings.password_file)]
+        return Server(
+            model_text(scl.read(self._file), settings.ied_name),
+            address=str(settings.bind_address),
+            port=settings.port,
+            max_connections=settings.max_connections,
+            report_buffer_bytes=settings.report_buffer_bytes,
+            tls=tls,
+            passwords=passwords,
+            identity=Identity("StatorWatch", "Motor health", revision),
+        )
+
+    def _path(self, device: str) -> str:
+        return f"{self._settings.ied_name}{device}"
+
+
+def _password(file: Path) -> str:
+    return read_secret(file).decode("latin-1").removesuffix("\n").removesuffix("\r")
+
+
+def _write(file: Path, content: bytes) -> None:
+    """Replace the file at once: a reader, or a crash, sees the old or the new one."""
+    written = file.with_suffix(".new")
+    with written.open("wb") as output:
+        output.write(content)
+        output.flush()
+        os.fsync(output.fileno())
+    written.replace(file)

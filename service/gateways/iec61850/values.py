@@ -1,0 +1,149 @@
+"""From what is told of the plant to the attributes of the IED's data model."""
+
+import math
+from collections.abc import Mapping
+from typing import Final
+
+from core.condition.kinds import State
+from core.rotor.finding import RotorState
+from mms import GOOD, Timestamp, Validity, Value
+from mms import Quality as MmsQuality
+from service.gateways.iec61850.description import ANALOGUES, INTEGERS
+from service.gateways.kind_codes import KIND_CODES, ROTOR_CODES
+from service.gateways.plant_state.device_health import DeviceHealth
+from service.gateways.plant_state.figures import MotorFigures, PlantState, Quality, RelayFigures
+
+OK, WARNING, ALARM = 1, 2, 3
+"""Of EEHealth and PhyHealth (IEC 61850-7-4)."""
+
+HEALTHS: Final[Mapping[DeviceHealth, int]] = {
+    DeviceHealth.NORMAL: OK,
+    DeviceHealth.OFF_SPEC: WARNING,
+    DeviceHealth.CHECK_FUNCTION: WARNING,
+    DeviceHealth.MAINTENANCE_REQUIRED: WARNING,
+    DeviceHealth.FAILURE: ALARM,
+}
+PERCENT: Final = 100.0
+LONGEST_TEXT: Final = 255
+PRINTABLE: Final = range(0x20, 0x7F)
+
+Values = dict[str, Value | MmsQuality]
+
+
+def motor_values(device: str, motor: MotorFigures, relay: RelayFigures | None) -> Values:
+    """Return the attributes of a motor's logical device. device: its name with that of the IED."""
+    quality, time = quality_of(motor), Timestamp(motor.as_of_ns or 0)
+    low, high = motor.mu_f_ci95 or (None, None)
+    figures = (motor.mu_f, low, high, motor.detection_limit, motor.load_level, motor.change)
+    values: Values = {
+        **_state(f"{device}/ZMOT1.EEHealth", HEALTHS[motor.device_health], quality, time),
+        **_phases(f"{device}/GAPC1.Str", motor, (State.WATCH, State.FAULT), quality, time),
+        **_phases(f"{device}/GAPC1.Op", motor, (State.FAULT,), quality, time),
+        **_state(f"{device}/GGIO1.IntIn1", KIND_CODES.index(motor.kind), quality, time),
+        **_state(f"{device}/GGIO1.IntIn2", _rotor_code(motor.rotor), quality, time),
+        **_relay_values(device, relay),
+    }
+    for number, figure in enumerate(figures, start=1):
+        values |= _analogue(f"{device}/GGIO1.AnIn{number}", figure, quality, time)
+    return values
+
+
+def unknown_values(device: str) -> Values:
+    """Return the attributes of a motor's device before anything is known: none of them is good."""
+    values: Values = {}
+    bad, time = MmsQuality(Validity.INVALID), Timestamp(0)
+    objects = ["ZMOT1.EEHealth", "GAPC1.Str", "GAPC1.Op", "LPHD1.PhyHealth", "LPHD1.Proxy"]
+    objects += [f"GGIO1.IntIn{number}" for number in range(1, len(INTEGERS) + 1)]
+    objects += [f"GGIO1.AnIn{number}" for number in range(1, len(ANALOGUES) + 1)]
+    for name in objects:
+        values |= {f"{device}/{name}.q": bad, f"{device}/{name}.t": time}
+    return values
+
+
+def plant_values(device: str, state: PlantState) -> Values:
+    """Return the group alarm and the group warning of the plant."""
+    quality = GOOD if state.is_current else MmsQuality(Validity.QUESTIONABLE, old_data=True)
+    time = Timestamp(state.read_ns)
+    healths = {HEALTHS[motor.device_health] for motor in state.motors.values()}
+    return {
+        **_state(f"{device}/CALH1.GrAlm", ALARM in healths, quality, time),
+        **_state(f"{device}/CALH1.GrWrn", WARNING in healths, quality, time),
+    }
+
+
+def names(device: str, text: str, vendor: str, model: str, revision: str) -> Values:
+    """Return name plates, and what the numbers of a device are, for people."""
+    values: Values = {
+        f"{device}/LLN0.NamPlt.vendor": "StatorWatch",
+        f"{device}/LLN0.NamPlt.swRev": printable(revision),
+        f"{device}/LLN0.NamPlt.d": printable(text),
+        f"{device}/LLN0.NamPlt.configRev": "1",
+        f"{device}/LPHD1.PhyNam.vendor": printable(vendor),
+        f"{device}/LPHD1.PhyNam.model": printable(model),
+        f"{device}/LPHD1.PhyNam.name": printable(text),
+    }
+    return values
+
+
+def meanings(device: str) -> Values:
+    """Return what the analogues and integers of a motor are, for people."""
+    return {
+        f"{device}/GGIO1.{kind}{number}.d": text
+        for kind, texts in (("AnIn", ANALOGUES), ("IntIn", INTEGERS))
+        for number, text in enumerate(texts, start=1)
+    }
+
+
+def quality_of(motor: MotorFigures) -> MmsQuality:
+    """Return the quality of a motor's figures: old data where they are uncertain for their age."""
+    if motor.quality is Quality.GOOD:
+        return GOOD
+    if motor.quality is Quality.BAD:
+        return MmsQuality(Validity.INVALID)
+    return MmsQuality(Validity.QUESTIONABLE, old_data=motor.stale)
+
+
+def printable(text: str) -> str:
+    """Return a text in the letters of a VisibleString; others become question marks."""
+    return "".join(one if ord(one) in PRINTABLE else "?" for one in text)[:LONGEST_TEXT]
+
+
+def _relay_values(device: str, relay: RelayFigures | None) -> Values:
+    """Return the physical device's health: that of the relay, for which the service stands as a proxy."""
+    health = WARNING if relay is None else HEALTHS[relay.device_health]
+    time = Timestamp(0 if relay is None else relay.changed_ns or 0)
+    is_told = relay is not None and relay.quality is Quality.GOOD
+    quality = GOOD if is_told else MmsQuality(Validity.QUESTIONABLE, old_data=True)
+    return {
+        **_state(f"{device}/LPHD1.PhyHealth", health, quality, time),
+        **_state(f"{device}/LPHD1.Proxy", True, GOOD, time),  # noqa: FBT003 - the value of the attribute
+    }
+
+
+def _state(name: str, value: Value, quality: MmsQuality, time: Timestamp) -> Values:
+    return {f"{name}.stVal": value, f"{name}.q": quality, f"{name}.t": time}
+
+
+def _phases(
+    name: str, motor: MotorFigures, states: tuple[State, ...], quality: MmsQuality, time: Timestamp
+) -> Values:
+    """Return general and the phases of a start or an operation; without a phase, general stands alone."""
+    is_on = motor.state in states
+    values: Values = {f"{name}.general": is_on, f"{name}.q": quality, f"{name}.t": time}
+    for phase in ("a", "b", "c"):
+        values[f"{name}.phs{phase.upper()}"] = is_on and motor.phase == phase
+    return values
+
+
+def _analogue(name: str, figure: float | None, quality: MmsQuality, time: Timestamp) -> Values:
+    """Return a figure in percent. One that is not known is no number, and invalid."""
+    is_known = figure is not None and math.isfinite(figure)
+    return {
+        f"{name}.mag.f": PERCENT * figure if figure is not None and is_known else math.nan,
+        f"{name}.q": quality if is_known else MmsQuality(Validity.INVALID),
+        f"{name}.t": time,
+    }
+
+
+def _rotor_code(rotor: RotorState | None) -> int:
+    return ROTOR_CODES.index(rotor) if rotor in ROTOR_CODES else 0

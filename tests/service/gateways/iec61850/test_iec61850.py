@@ -1,0 +1,259 @@
+"""Clients that do not stand on libiec61850 see the motors' health at the service's own IED."""
+
+import asyncio
+import math
+import os
+import queue
+import signal
+import socket
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
+
+import iec61850
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from open61850 import data as open_data
+from open61850 import mms as open_mms
+from open61850 import scl as open_scl
+from open61850.mms import rcb as open_rcb
+
+import scl
+from mms import Client, FunctionalConstraint, MmsError, Timestamp, Validity
+from mms import Quality as MmsQuality
+from mms.values import BitString
+from service.configuration.gateways.iec61850 import Iec61850Settings
+from service.configuration.gateways.settings import GatewaysSettings
+from service.configuration.settings import Settings
+from service.gateways.iec61850.logical_devices import LONGEST, logical_devices
+from service.storage import Repository
+from service.storage.states import LinkState
+from testing.ports import LOOPBACK, free_port
+from testing.service.conditions import FAULT, HEALTHY, tell
+from testing.service.gateways import running_gateways
+from testing.service.plants import NOW_NS, two_motor_plant
+from testing.waiting import eventually
+
+PUMP, FAN = "MCCPUMP_A1", "MCCFAN_A2"
+STATUS, MEASURED = FunctionalConstraint.ST, FunctionalConstraint.MX
+
+
+def settings_of(directory: Path, **table: object) -> Settings:
+    server = Iec61850Settings.model_validate({"port": free_port(), **table})
+    return Settings(
+        data_directory=directory, stale_after_days=3650, gateways=GatewaysSettings(iec61850=server)
+    )
+
+
+def port_of(chosen: Settings) -> int:
+    assert chosen.gateways.iec61850 is not None
+    return chosen.gateways.iec61850.port
+
+
+@pytest.fixture
+def port(repository: Repository, tmp_path: Path) -> Iterator[int]:
+    chosen = settings_of(tmp_path)
+    with running_gateways(chosen):
+        yield port_of(chosen)
+
+
+@pytest.fixture
+def client(port: int) -> Iterator[Client]:
+    with Client.connect(LOOPBACK, port) as client:
+        yield client
+
+
+def quality(client: Client, reference: str, constraint: FunctionalConstraint = STATUS) -> MmsQuality:
+    bits = client.read(f"{reference}.q", constraint)
+    assert isinstance(bits, BitString)
+    return MmsQuality.of(bits)
+
+
+def test_a_fault_is_seen_with_its_phase_time_and_quality(repository: Repository, client: Client) -> None:
+    assert quality(client, f"{PUMP}/ZMOT1.EEHealth").validity is Validity.INVALID
+    tell(repository, FAULT)
+    assert eventually(lambda: client.read(f"{PUMP}/ZMOT1.EEHealth.stVal", STATUS) == 3)
+    assert quality(client, f"{PUMP}/ZMOT1.EEHealth").validity is Validity.GOOD
+    time = client.read(f"{PUMP}/ZMOT1.EEHealth.t", STATUS)
+    assert isinstance(time, Timestamp)
+    assert time.ns == pytest.approx(NOW_NS, abs=100)
+    for name in ("GAPC1.Str", "GAPC1.Op"):
+        phases = [client.read(f"{PUMP}/{name}.{one}", STATUS) for one in ("general", "phsA", "phsB", "phsC")]
+        assert phases == [True, False, True, False]
+    assert client.read(f"{PUMP}/GGIO1.AnIn1.mag.f", MEASURED) == pytest.approx(1.21)
+    assert client.read(f"{PUMP}/GGIO1.AnIn3.mag.f", MEASURED) == pytest.approx(2.25)
+    load = client.read(f"{PUMP}/GGIO1.AnIn5.mag.f", MEASURED)
+    assert isinstance(load, float)
+    assert math.isnan(load)
+    assert quality(client, f"{PUMP}/GGIO1.AnIn5", MEASURED).validity is Validity.INVALID
+    assert client.read(f"{PUMP}/LPHD1.Proxy.stVal", STATUS) is True
+    assert client.read("MCCPLANT/CALH1.GrAlm.stVal", STATUS) is True
+
+
+def test_a_relay_that_does_not_answer_is_no_good_physical_device(
+    repository: Repository, client: Client
+) -> None:
+    repository.set_link_state("A1_SEL710", LinkState.DOWN, now_ns=NOW_NS, reason="no answer")
+    assert eventually(lambda: client.read(f"{PUMP}/LPHD1.PhyHealth.stVal", STATUS) == 3)
+    assert client.read(f"{FAN}/LPHD1.PhyHealth.stVal", STATUS) == 2
+
+
+def test_old_figures_are_questionable(repository: Repository, tmp_path: Path) -> None:
+    tell(repository, HEALTHY)
+    chosen = settings_of(tmp_path).model_copy(update={"stale_after_days": 0.01})
+    with running_gateways(chosen), Client.connect(LOOPBACK, port_of(chosen)) as client:
+        found = quality(client, f"{PUMP}/ZMOT1.EEHealth")
+        assert (found.validity, found.old_data) == (Validity.QUESTIONABLE, True)
+        assert client.read(f"{PUMP}/ZMOT1.EEHealth.stVal", STATUS) == 2
+
+
+def test_open61850_browses_reads_and_is_told_of_a_change(repository: Repository, port: int) -> None:
+    tell(repository, HEALTHY)
+    reports: queue.SimpleQueue[open_mms.InformationReport] = queue.SimpleQueue()
+    with open_mms.MmsClient.connect(LOOPBACK, port=port, on_information_report=reports.put) as client:
+        model = open_mms.discover(client)
+        devices = {str(one).partition("/")[0] for one in model.references()}
+        assert devices == {PUMP, FAN, "MCCPLANT"}
+        assert eventually(lambda: client.read(f"{PUMP}/ZMOT1.EEHealth.stVal[ST]") == open_data.IntData(1))
+        open_rcb.enable(client, open_mms.ObjectName("LLN0$BR$brcbVerdict01", PUMP))
+        tell(repository, FAULT)
+
+        def values() -> list[object]:
+            return [
+                entry.value
+                for entry in open_mms.decode_report(reports.get(timeout=20)).entries
+                if entry.reason is None or "data" in str(entry.reason).lower()
+            ]
+
+        assert eventually(lambda: "3" in str(values()), within_s=20)
+
+
+def test_the_client_in_rust_reads_the_level(repository: Repository, port: int) -> None:
+    tell(repository, FAULT)
+
+    async def level() -> float:
+        client = await iec61850.IedConnection.connect(f"{LOOPBACK}:{port}")
+        try:
+            return float(await client.read_float(f"{PUMP}/GGIO1.AnIn1.mag.f", iec61850.FC.MX))
+        finally:
+            await client.disconnect()
+
+    assert eventually(lambda: asyncio.run(level()) == pytest.approx(1.21))
+
+
+def test_the_description_is_read_by_ours_and_by_another_reader(port: int, tmp_path: Path) -> None:
+    file = tmp_path / "statorwatch.icd"
+    ours = scl.read(file)
+    assert ours.warnings == ()
+    assert {device.name for device in ours.ied("MCC").logical_devices} == {PUMP, FAN, "MCCPLANT"}
+    (theirs,) = open_scl.load_ieds(file)
+    assert set(theirs.domains) == {PUMP, FAN, "MCCPLANT"}
+
+
+def test_nobody_writes(port: int) -> None:
+    with open_mms.MmsClient.connect(LOOPBACK, port=port) as client:
+        for name in ("GGIO1$MX$AnIn1$mag$f", "ZMOT1$ST$EEHealth$stVal"):
+            value = client.read(
+                f"{PUMP}/{name.replace('$MX', '').replace('$ST', '').replace('$', '.')}"
+                f"[{'MX' if 'MX' in name else 'ST'}]"
+            )
+            with pytest.raises(open_mms.MmsError):
+                client.write(open_mms.ObjectName(name, PUMP), value)
+
+
+def test_five_clients_at_a_time_and_silent_ones_end(port: int) -> None:
+    crowd = [socket.create_connection((LOOPBACK, port)) for _ in range(20)]
+    for one in crowd:
+        one.close()
+
+    def is_served() -> bool:
+        try:
+            with Client.connect(LOOPBACK, port) as client:
+                return client.read(f"{PUMP}/LPHD1.Proxy.stVal", STATUS) is True
+        except MmsError:
+            return False
+
+    assert eventually(is_served)
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.lists(st.binary(min_size=1, max_size=400), min_size=1, max_size=4))
+def garbled_messages(port: int, messages: list[bytes]) -> None:
+    """Bytes as they come, and as the contents of TPKT packets, which the stack takes apart."""
+    for framed in (False, True):
+        with socket.create_connection((LOOPBACK, port)) as link:
+            for message in messages:
+                head = b"\x03\x00" + (len(message) + 4).to_bytes(2, "big") if framed else b""
+                with suppress(OSError):
+                    link.sendall(head + message)
+    with Client.connect(LOOPBACK, port) as client:
+        assert client.read(f"{PUMP}/LPHD1.Proxy.stVal", FunctionalConstraint.ST) is True
+
+
+def test_garbled_messages_bring_nothing_down(port: int) -> None:
+    garbled_messages(port)
+
+
+def test_a_gateway_that_is_killed_is_back_with_the_right_values(
+    repository: Repository, tmp_path: Path
+) -> None:
+    tell(repository, HEALTHY)
+    chosen = settings_of(tmp_path)
+
+    def health() -> object:
+        try:
+            with Client.connect(LOOPBACK, port_of(chosen)) as client:
+                return client.read(f"{PUMP}/ZMOT1.EEHealth.stVal", STATUS)
+        except MmsError:
+            return None
+
+    with running_gateways(chosen) as gateways:
+        assert health() == 1
+        first = gateways.status()[0].process_id
+        assert first is not None
+        os.kill(first, signal.SIGKILL)
+        tell(repository, FAULT)
+        assert eventually(lambda: health() == 3)
+
+
+def test_a_password_is_asked_for(repository: Repository, tmp_path: Path) -> None:
+    secret = tmp_path / "password"
+    secret.write_text("open sesame\n", encoding="ascii")
+    secret.chmod(0o600)
+    chosen = settings_of(tmp_path, password_file=secret)
+    with running_gateways(chosen):
+        with pytest.raises(MmsError), Client.connect(LOOPBACK, port_of(chosen)):
+            pass
+        with Client.connect(LOOPBACK, port_of(chosen), password="open sesame") as client:  # noqa: S106
+            assert client.read(f"{PUMP}/LPHD1.Proxy.stVal", STATUS) is True
+
+
+def test_beyond_loopback_somebody_decides_who_may_read() -> None:
+    with pytest.raises(ValueError, match="open_to_all"):
+        Iec61850Settings.model_validate({"bind_address": "0.0.0.0"})  # noqa: S104 - refused
+    assert Iec61850Settings.model_validate({"bind_address": "0.0.0.0", "open_to_all": True})  # noqa: S104
+
+
+def test_names_of_logical_devices_are_those_of_motors_and_never_two_the_same() -> None:
+    motors = ["PUMP-A1", "PUMP A1", "1-FAN", "Plant", "Лифт", "x" * 100, "x" * 101]
+    found = logical_devices(motors)
+    assert found["1-FAN"] == "M_1_FAN"
+    assert len({device.upper() for device in found.values()} | {"PLANT"}) == len(motors) + 1
+    assert all(len(device) <= LONGEST and device.isascii() for device in found.values())
+    assert logical_devices(["PUMP-A1"]) == {"PUMP-A1": "PUMP_A1"}
+    assert found == logical_devices(reversed(motors))
+
+
+def test_texts_of_a_relay_cannot_break_the_model(repository: Repository, tmp_path: Path) -> None:
+    hostile = 'SEL" <&> {\n} ' + "é" * 300
+    plant = two_motor_plant()
+    relays = tuple(replace(one, manufacturer=hostile) for one in plant.relays)
+    repository.sync_plant(replace(plant, relays=relays))
+    chosen = settings_of(tmp_path)
+    with running_gateways(chosen), Client.connect(LOOPBACK, port_of(chosen)) as client:
+        vendor = client.read(f"{PUMP}/LPHD1.PhyNam.vendor", FunctionalConstraint.DC)
+    assert isinstance(vendor, str)
+    assert vendor.startswith('SEL" <&> {?} ??')
+    assert len(vendor) == 255
