@@ -29,7 +29,13 @@ def _modbus() -> Run:
     return run
 
 
-KINDS: Mapping[str, Callable[[], Run]] = {"iec61850": _iec61850, "modbus": _modbus}
+def _mqtt() -> Run:
+    from service.gateways.mqtt.gateway import run
+
+    return run
+
+
+KINDS: Mapping[str, Callable[[], Run]] = {"iec61850": _iec61850, "modbus": _modbus, "mqtt": _mqtt}
 """Each loads its gateway, with its library, in its own process alone."""
 
 

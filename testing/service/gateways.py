@@ -9,12 +9,19 @@ from testing.waiting import wait_until
 
 
 @contextmanager
-def running_gateways(settings: Settings) -> Iterator[PlantGateways]:
-    """Run the gateways of these settings; the block begins when nothing lacks in any of them."""
+def started_gateways(settings: Settings) -> Iterator[PlantGateways]:
+    """Run the gateways of these settings, whether they work or not."""
     gateways = PlantGateways(settings)
     gateways.start()
     try:
-        wait_until(lambda: all(one.problem is None for one in gateways.status()), "the gateways to work")
         yield gateways
     finally:
         gateways.stop()
+
+
+@contextmanager
+def running_gateways(settings: Settings) -> Iterator[PlantGateways]:
+    """Run the gateways of these settings; the block begins when nothing lacks in any of them."""
+    with started_gateways(settings) as gateways:
+        wait_until(lambda: all(one.problem is None for one in gateways.status()), "the gateways to work")
+        yield gateways

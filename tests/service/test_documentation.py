@@ -19,6 +19,7 @@ from service.configuration.channels import (
     SyslogChannel,
     WebhookChannel,
 )
+from service.configuration.gateways.mqtt import SparkplugSettings
 from service.configuration.gateways.settings import GatewaysSettings
 from service.configuration.notifications import Digest, NotificationSettings, Route
 from service.configuration.retention import RetentionSettings
@@ -73,6 +74,12 @@ def test_every_setting_of_the_gateways_is_documented() -> None:
     for kind, field in GatewaysSettings.model_fields.items():
         (model,) = (one for one in get_args(field.annotation) if one is not type(None))
         assert re.findall(rf"^\| `{kind}\.(\w+)` \|", section, re.MULTILINE) == list(model.model_fields), kind
+
+
+def test_every_setting_of_the_sparkplug_edge_node_is_documented() -> None:
+    page = (DOCS / "reference" / "settings.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| `mqtt\.sparkplug\.(\w+)` \|", page, re.MULTILINE)
+    assert rows == list(SparkplugSettings.model_fields)
 
 
 def test_every_setting_of_the_alarms_is_documented_with_its_default_and_range() -> None:

@@ -16,6 +16,7 @@ from service.storage.repository.conditions.tracking import TrackingRows
 from service.storage.repository.history.answers import AnswerRows
 from service.storage.repository.history.condition_days import ConditionDayRows
 from service.storage.repository.history.conditions import PastConditionRows
+from service.storage.repository.history.journal import JournalRows
 from service.storage.repository.history.metered import MeteredRows
 from service.storage.repository.history.neighbours import NeighbourRows
 from service.storage.repository.history.rotor import RotorRows
@@ -83,6 +84,7 @@ class Repository(
     ThinnedTrendRows,
     NeighbourRows,
     PastConditionRows,
+    JournalRows,
     ObservationRows,
     ConditionDayRows,
     ConditionEventRows,

@@ -1,0 +1,83 @@
+"""What happened while nobody could be told: read from the database's own history, in order."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from service.gateways.mqtt import documents
+from service.gateways.mqtt.broker import Message
+from service.gateways.mqtt.position import WINDOW, Place, Position
+from service.storage.records import ConditionChange
+from service.storage.repository import Repository
+
+PAGE = 200
+
+
+@dataclass(frozen=True, slots=True)
+class Telling:
+    """Messages, and what is told with them: changes of alarms, or of a motor's condition up to a place."""
+
+    messages: tuple[Message, ...]
+    sequences: tuple[int, ...] = ()
+    motor: str = ""
+    place: Place | None = None
+
+    def note(self, position: Position) -> None:
+        """Note in the position that the broker has it."""
+        position.told(self.sequences)
+        if self.place is not None:
+            position.conditions[self.motor] = self.place
+
+
+class History:
+    """Reads what has not been told yet. Every method may raise SQLAlchemyError."""
+
+    def __init__(self, repository: Repository, prefix: str) -> None:
+        self._repository = repository
+        self._alarms = f"{prefix}/changes/alarms"
+        self._conditions = f"{prefix}/changes/conditions"
+
+    def begin(self, position: Position) -> None:
+        """Let a new position begin now."""
+        latest = self._repository.latest_alarm_change()
+        earlier = self._repository.alarm_sequences(latest - WINDOW, limit=2 * WINDOW)
+        position.begin(earlier, self._repository.latest_condition_changes())
+
+    def alarms(self, position: Position) -> Telling | None:
+        """Return the next changes of alarms; None where all have been told."""
+        found = self._repository.alarm_sequences(position.alarms_after, limit=WINDOW + PAGE)
+        sequences = position.untold(found)[:PAGE]
+        if not sequences:
+            return None
+        messages = [
+            Message(self._alarms, documents.alarm_change(change, alarm), retain=False)
+            for change, alarm in self._repository.alarm_changes_of(sequences)
+        ]
+        return Telling(tuple(messages), sequences=tuple(sequences))
+
+    def conditions(self, position: Position) -> Iterator[Telling]:
+        """Yield the changes of each motor's condition that have not been told, oldest first."""
+        for motor, latest in self._repository.latest_condition_changes().items():
+            told = position.conditions.get(motor)
+            if told == latest:
+                continue
+            changes = [
+                Message(self._conditions, documents.condition_change(change), retain=False)
+                for change in reversed(self._untold(motor, told))
+            ]
+            yield Telling(tuple(changes), motor=motor, place=latest)
+
+    def _untold(self, motor: str, told: Place | None) -> list[ConditionChange]:
+        """Return what is later than what was told, latest first.
+
+        A record that comes late may take away what was told. Then the latest change that is left is told.
+        """
+        found: list[ConditionChange] = []
+        page = self._repository.condition_history(motor, limit=PAGE)
+        while True:
+            for change in page.items:
+                if told is not None and found and (change.time_ns, change.id) <= told:
+                    return found
+                found.append(change)
+            if page.next is None or (told is not None and (found[-1].time_ns, found[-1].id) <= told):
+                return found
+            page = self._repository.condition_history(motor, limit=PAGE, after=page.next)
