@@ -140,9 +140,18 @@ async def stay_connected(
 
 async def first_of(*parts: Coroutine[object, object, None]) -> None:
     """Run all until one of them ends, or fails: then the others are ended, and its failure is raised."""
+    await _run(parts, asyncio.FIRST_COMPLETED)
+
+
+async def all_of(*parts: Coroutine[object, object, None]) -> None:
+    """Run all to their ends, or until one fails: then the others are ended, and its failure is raised."""
+    await _run(parts, asyncio.FIRST_EXCEPTION)
+
+
+async def _run(parts: Iterable[Coroutine[object, object, None]], until: str) -> None:
     tasks = [asyncio.ensure_future(part) for part in parts]
     try:
-        done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+        done, _ = await asyncio.wait(tasks, return_when=until)
     finally:
         for task in tasks:
             task.cancel()

@@ -10,8 +10,9 @@ from sqlalchemy.exc import SQLAlchemyError
 from service.configuration.gateways.mqtt import MqttSettings
 from service.gateways.context import GatewayContext
 from service.gateways.mqtt import documents
-from service.gateways.mqtt.broker import AT_LEAST_ONCE, Broker, Message, first_of
+from service.gateways.mqtt.broker import AT_LEAST_ONCE, Broker, Message, all_of, first_of
 from service.gateways.mqtt.history import History, Telling
+from service.gateways.mqtt.kept_topics import KeptTopics
 from service.gateways.mqtt.plant_feed import PlantFeed
 from service.gateways.mqtt.position import Position
 from service.gateways.mqtt.topics import level
@@ -40,8 +41,8 @@ class PlainTopics:
         self._stop = context.stop
         self._history = History(context.repository, settings.prefix)
         self._position = Position(context.settings.data_directory)
+        self._topics = KeptTopics(context.settings.data_directory)
         self._status = f"{settings.prefix}/status"
-        self._conditions_read_s = 0.0
 
     def connection(self) -> Broker:
         """Return a new connection; the broker tells when it is lost. Raises CredentialFileError, OSError."""
@@ -56,61 +57,61 @@ class PlainTopics:
         # Until the database has told the plant, what the broker keeps is old.
         await broker.publish_all([Message(self._status, documents.offline())])
         self._say(None)
-        told, self._conditions_read_s = self._feed.begin(), 0.0
-        while not self._stop.is_set():
-            change = await self._feed.next_change(told)
-            if change is not None and await self._has_begun():
-                await self._tell_state(broker, change, is_first=told.read_ns == 0)
-                told, self._conditions_read_s = change.now, 0.0
-            await self._tell_history(broker)
+        # A database that does not answer is told as well: the state does not wait for the history.
+        await all_of(self._tell_states(broker), self._tell_history(broker))
         await broker.publish_all([Message(self._status, documents.offline())])
 
-    async def _tell_state(self, broker: Broker, change: PlantChange, *, is_first: bool) -> None:
-        changed = {self._topic(one): documents.figures(one) for one in _changed(change)}
+    async def _tell_states(self, broker: Broker) -> None:
+        told = self._feed.begin()
+        while not self._stop.is_set():
+            change = await self._feed.next_change(told)
+            if change is not None:
+                await self._tell_state(broker, change)
+                told = change.now
+
+    async def _tell_state(self, broker: Broker, change: PlantChange) -> None:
         topics = {
             self._topic(one)
             for some in (change.now.motors, change.now.relays, change.now.alarms)
             for one in some.values()
         }
-        gone = self._position.topics - topics
-        if topics - self._position.topics:
-            # First noted, then kept by the broker: whatever happens, it can be taken away again.
-            self._position.topics |= topics
-            await asyncio.to_thread(self._position.save)
-        await broker.publish_all(Message(topic, payload) for topic, payload in changed.items())
-        await broker.publish_all(Message(topic, b"") for topic in sorted(gone))
-        if gone:
-            self._position.topics -= gone
-            await asyncio.to_thread(self._position.save)
+        # First noted, then kept by the broker: whatever happens, it can be taken away again.
+        await asyncio.to_thread(self._topics.add, topics)
+        await broker.publish_all(
+            Message(self._topic(one), documents.figures(one)) for one in _changed(change)
+        )
+        gone = self._topics.gone(topics)
+        await broker.publish_all(Message(topic, b"") for topic in gone)
+        await asyncio.to_thread(self._topics.forget, gone)
+        is_first = change.before.read_ns == 0
         if is_first or change.before.is_current != change.now.is_current:
             await broker.publish_all(
                 [Message(self._status, documents.online(is_current=change.now.is_current))]
             )
 
-    async def _has_begun(self) -> bool:
-        """Tell whether it is known from where on what happens is to be told."""
-        try:
-            if self._position.is_new:
-                await asyncio.to_thread(self._history.begin, self._position)
-        except SQLAlchemyError as error:
-            self._say(database_trouble(error))
-        return not self._position.is_new
-
     async def _tell_history(self, broker: Broker) -> None:
         """Tell what happened; it counts as told when the broker has it."""
+        seen, read_s = None, 0.0
+        while not self._stop.is_set():
+            latest = self._feed.latest
+            is_due = latest is not seen or time.monotonic() - read_s > CONDITIONS_S
+            try:
+                await self._tell_alarms(broker)
+                if is_due:
+                    for telling in await asyncio.to_thread(self._conditions):
+                        await self._tell_changes(broker, telling)
+                    seen, read_s = latest, time.monotonic()
+            except SQLAlchemyError as error:
+                self._say(database_trouble(error))
+            else:
+                self._say(None)
+            await self._feed.next_change(latest)
+
+    async def _tell_alarms(self, broker: Broker) -> None:
         if self._position.is_new:
-            return
-        try:
-            while (telling := await asyncio.to_thread(self._history.alarms, self._position)) is not None:
-                await self._tell_changes(broker, telling)
-            if time.monotonic() - self._conditions_read_s > CONDITIONS_S or self._conditions_read_s == 0:
-                for telling in await asyncio.to_thread(self._conditions):
-                    await self._tell_changes(broker, telling)
-                self._conditions_read_s = time.monotonic()
-        except SQLAlchemyError as error:
-            self._say(database_trouble(error))
-        else:
-            self._say(None)
+            await asyncio.to_thread(self._history.begin, self._position)
+        while (telling := await asyncio.to_thread(self._history.alarms, self._position)) is not None:
+            await self._tell_changes(broker, telling)
 
     def _conditions(self) -> list[Telling]:
         return list(self._history.conditions(self._position))

@@ -39,6 +39,11 @@ class PlantFeed:
         changed, self._changed = self._changed, asyncio.Event()
         changed.set()
 
+    @property
+    def latest(self) -> PlantState:
+        """Return the state that was told last."""
+        return self._state
+
     def begin(self) -> PlantState:
         """Return what a connection has told when it begins: nothing, which changes once the plant is read."""
         return PlantState() if self.is_read.is_set() else self._unread

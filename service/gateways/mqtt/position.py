@@ -16,7 +16,7 @@ Place = tuple[int, str]
 class Position:
     """What has been told; `save` is called once the broker has it.
 
-    conditions: by motor.  topics: those whose latest message the broker keeps.
+    conditions: by motor.
     """
 
     def __init__(self, data_directory: Path) -> None:
@@ -26,12 +26,10 @@ class Position:
         self.is_new = found is None
         self._alarms: set[int] = set()
         self.conditions: dict[str, Place] = {}
-        self.topics: set[str] = set()
         if found is not None:
             try:
                 self._alarms = set(map(_number, _list(found["alarms"])))
                 self.conditions = {str(name): _place(one) for name, one in _items(found["conditions"])}
-                self.topics = set(map(str, _list(found["topics"])))
             except (KeyError, TypeError, ValueError) as error:
                 raise KeptFileError(
                     f"{self._file}: expected what was told to the broker, found another document"
@@ -62,11 +60,7 @@ class Position:
         """Keep it. Raises OSError."""
         write_kept(
             self._file,
-            {
-                "alarms": sorted(self._alarms),
-                "conditions": self.conditions,
-                "topics": sorted(self.topics),
-            },
+            {"alarms": sorted(self._alarms), "conditions": self.conditions},
         )
 
 
