@@ -2,6 +2,7 @@
 
 import os
 import shutil
+import signal
 import subprocess
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -58,6 +59,16 @@ class Mosquitto:
         if process is not None:
             process.terminate()
             process.wait(timeout=30)
+
+    @contextmanager
+    def hanging(self) -> Iterator[None]:
+        """Let it say nothing for the time of the block; its connections stay."""
+        assert self._process is not None
+        self._process.send_signal(signal.SIGSTOP)
+        try:
+            yield
+        finally:
+            self._process.send_signal(signal.SIGCONT)
 
     def publish(self, topic: str, payload: bytes) -> None:
         """Publish a message by mosquitto_pub."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from service.gateways.mqtt import documents
 from service.gateways.mqtt.broker import Message
 from service.gateways.mqtt.position import WINDOW, Place, Position
-from service.storage.records import ConditionChange
+from service.storage.records import ConditionChange, Cursor
 from service.storage.repository import Repository
 
 PAGE = 200
@@ -40,7 +40,7 @@ class History:
         """Let a new position begin now."""
         latest = self._repository.latest_alarm_change()
         earlier = self._repository.alarm_sequences(latest - WINDOW, limit=2 * WINDOW)
-        position.begin(earlier, self._repository.latest_condition_changes())
+        position.begin(earlier, self._latest())
 
     def alarms(self, position: Position) -> Telling | None:
         """Return the next changes of alarms; None where all have been told."""
@@ -56,28 +56,35 @@ class History:
 
     def conditions(self, position: Position) -> Iterator[Telling]:
         """Yield the changes of each motor's condition that have not been told, oldest first."""
-        for motor, latest in self._repository.latest_condition_changes().items():
+        for motor, latest in self._latest().items():
             told = position.conditions.get(motor)
-            if told == latest:
-                continue
-            changes = [
-                Message(self._conditions, documents.condition_change(change), retain=False)
-                for change in reversed(self._untold(motor, told))
-            ]
-            yield Telling(tuple(changes), motor=motor, place=latest)
+            if told != latest:
+                changes = [
+                    Message(self._conditions, documents.condition_change(change), retain=False)
+                    for change in reversed(self._untold(motor, told, latest))
+                ]
+                yield Telling(tuple(changes), motor=motor, place=latest)
 
-    def _untold(self, motor: str, told: Place | None) -> list[ConditionChange]:
-        """Return what is later than what was told, latest first.
+    def _latest(self) -> dict[str, Place]:
+        found = self._repository.latest_condition_changes()
+        return {motor: Place(time_ns, tuple(ids)) for motor, (time_ns, ids) in found.items()}
+
+    def _untold(self, motor: str, told: Place | None, latest: Place) -> list[ConditionChange]:
+        """Return what has not been told, latest first.
 
         A record that comes late may take away what was told. Then the latest change that is left is told.
         """
+        if told is not None and latest.time_ns < told.time_ns:
+            told = Place(latest.time_ns)
         found: list[ConditionChange] = []
-        page = self._repository.condition_history(motor, limit=PAGE)
+        after: Cursor | None = None
         while True:
+            page = self._repository.condition_history(motor, limit=PAGE, after=after)
             for change in page.items:
-                if told is not None and found and (change.time_ns, change.id) <= told:
+                if told is not None and change.time_ns < told.time_ns:
                     return found
-                found.append(change)
-            if page.next is None or (told is not None and (found[-1].time_ns, found[-1].id) <= told):
+                if told is None or change.time_ns > told.time_ns or change.id not in told.ids:
+                    found.append(change)
+            after = page.next
+            if after is None:
                 return found
-            page = self._repository.condition_history(motor, limit=PAGE, after=page.next)

@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Mapping
 from pathlib import Path
+from typing import NamedTuple
 
 from service.gateways.mqtt.kept_file import KeptFileError, read_kept, write_kept
 
@@ -9,8 +10,12 @@ POSITION = "mqtt-position.json"
 WINDOW = 200
 """So many numbers back it is looked for changes of alarms that turned up later than others."""
 
-Place = tuple[int, str]
-"""Time and id of the latest change of a motor's condition that was told."""
+
+class Place(NamedTuple):
+    """Time of the latest changes of a motor's condition that were told, and their ids."""
+
+    time_ns: int
+    ids: tuple[str, ...] = ()
 
 
 class Position:
@@ -83,5 +88,5 @@ def _items(found: object) -> Collection[tuple[object, object]]:
 
 
 def _place(found: object) -> Place:
-    time_ns, change_id = _list(found)
-    return _number(time_ns), str(change_id)
+    time_ns, ids = _list(found)
+    return Place(_number(time_ns), tuple(map(str, _list(ids))))

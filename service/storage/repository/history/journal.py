@@ -39,21 +39,22 @@ class JournalRows(Sessions):
         with self._read() as session:
             return [(AlarmChange(*row[:WIDTH]), Alarm(*row[WIDTH:])) for row in session.execute(query)]
 
-    def latest_condition_changes(self) -> Mapping[str, tuple[int, str]]:
-        """Return time and id of the latest change of each motor in service; not of those without any."""
+    def latest_condition_changes(self) -> Mapping[str, tuple[int, Sequence[str]]]:
+        """Return the latest time at which each motor in service changed, and the ids of the changes then.
+
+        A motor that never changed is not there.
+        """
         change = aliased(ConditionChangeRow)
         # One look into the index of each motor's changes, however many there are.
-        latest = (
-            select(change.id)
-            .where(change.motor == MotorRow.name)
-            .order_by(change.time_ns.desc(), change.id.desc())
-            .limit(1)
-            .scalar_subquery()
-        )
+        latest = select(func.max(change.time_ns)).where(change.motor == MotorRow.name).scalar_subquery()
         query = (
             select(MotorRow.name, ConditionChangeRow.time_ns, ConditionChangeRow.id)
-            .join(ConditionChangeRow, ConditionChangeRow.id == latest)
-            .where(MotorRow.in_service)
+            .join(ConditionChangeRow, ConditionChangeRow.motor == MotorRow.name)
+            .where(MotorRow.in_service, ConditionChangeRow.time_ns == latest)
+            .order_by(MotorRow.name, ConditionChangeRow.id)
         )
+        found: dict[str, tuple[int, list[str]]] = {}
         with self._read() as session:
-            return {name: (time_ns, change_id) for name, time_ns, change_id in session.execute(query)}
+            for motor, time_ns, change_id in session.execute(query):
+                found.setdefault(motor, (time_ns, []))[1].append(change_id)
+        return found

@@ -9,7 +9,7 @@ import pytest
 from service.gateways.mqtt.history import PAGE, History
 from service.gateways.mqtt.kept_file import KeptFileError
 from service.gateways.mqtt.kept_topics import TOPICS, KeptTopics
-from service.gateways.mqtt.position import POSITION, WINDOW, Position
+from service.gateways.mqtt.position import POSITION, WINDOW, Place, Position
 from service.storage import Repository
 from service.storage.states import AlarmKind
 from testing.service.conditions import FAULT, HEALTHY, tell
@@ -90,14 +90,31 @@ def test_a_record_that_comes_late_has_its_last_word_told(
     assert told_states(history, position) == ["fault", "healthy", "fault"]
     assert told_states(history, position) == []
     # As if a fold had taken the latest change away: what was told is later than all there is.
-    position.conditions["PUMP-A1"] = (NOW_NS + 5, "gone")
+    position.conditions["PUMP-A1"] = Place(NOW_NS + 5, ("gone",))
     assert told_states(history, position) == ["fault"]
     assert told_states(history, position) == []
 
 
+def test_changes_of_the_same_time_are_all_told(
+    repository: Repository, history: History, position: Position
+) -> None:
+    expected = [FAULT, HEALTHY] * 4
+    told = []
+    for condition in expected:
+        tell(repository, condition)
+        told += told_states(history, position)
+    assert told == [condition.state for condition in expected]
+
+
 @pytest.mark.parametrize(
     "text",
-    ["[]", "{", '{"alarms": [true], "conditions": {}}', '{"alarms": [], "conditions": {"A": [1]}}', "{}"],
+    [
+        "[]",
+        "{",
+        '{"alarms": [true], "conditions": {}}',
+        '{"alarms": [], "conditions": {"A": [1, "x"]}}',
+        "{}",
+    ],
 )
 def test_a_position_that_is_something_else_is_told(tmp_path: Path, text: str) -> None:
     (tmp_path / POSITION).write_text(text, encoding="utf-8")

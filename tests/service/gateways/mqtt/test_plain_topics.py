@@ -200,6 +200,27 @@ def test_a_broker_that_says_nothing_is_told_and_left(repository: Repository, tmp
         second.close()
 
 
+def test_a_broker_that_hangs_for_a_while_is_told_all_that_happened(
+    repository: Repository, broker: Mosquitto, tmp_path: Path
+) -> None:
+    tell(repository, HEALTHY)
+    settings = settings_of(tmp_path, broker.port, timeout_s=1.0)
+    with broker.listening("statorwatch/#") as heard, running_gateways(settings) as gateways:
+        wait_until(lambda: last(heard, STATUS).get("state") == "online")
+        wait_until((tmp_path / POSITION).exists)
+        with broker.hanging():
+            tell(repository, FAULT)
+            tell(repository, replace(HEALTHY, as_of_ns=NOW_NS + 1), now_ns=NOW_NS + 1)
+            wait_until(lambda: "timed out" in str(gateways.status()[0].problem))
+        wait_until(lambda: gateways.status()[0].problem is None)
+        wait_until(
+            lambda: (
+                [one["state"] for one in documents(heard, "statorwatch/changes/conditions")][-2:]
+                == ["fault", "healthy"]
+            )
+        )
+
+
 def test_without_a_broker_the_service_is_told(repository: Repository, tmp_path: Path) -> None:
     with started_gateways(settings_of(tmp_path, free_port())) as gateways:
         wait_until(lambda: "refused" in str(gateways.status()[0].problem))

@@ -28,4 +28,8 @@ def test_the_latest_change_of_each_motor(repository: Repository) -> None:
     tell(repository, FAULT, now_ns=NOW_NS + HOUR_NS)
     latest = repository.condition_history("PUMP-A1", limit=1).items[0]
     assert latest.state is State.FAULT
-    assert repository.latest_condition_changes() == {"PUMP-A1": (NOW_NS + HOUR_NS, latest.id)}
+    assert repository.latest_condition_changes() == {"PUMP-A1": (NOW_NS + HOUR_NS, [latest.id])}
+    tell(repository, HEALTHY, now_ns=NOW_NS + HOUR_NS)
+    replaced = repository.condition_history("PUMP-A1", limit=1).items[0]
+    assert replaced.id != latest.id
+    assert repository.latest_condition_changes() == {"PUMP-A1": (NOW_NS + HOUR_NS, [replaced.id])}
