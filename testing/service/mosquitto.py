@@ -47,7 +47,7 @@ class Mosquitto:
     def start(self) -> None:
         """Start it; return when it answers."""
         file = self.directory / "mosquitto.conf"
-        lines = [f"listener {self.port} {LOOPBACK}", f"user {os.environ.get('USER', 'root')}", *self.settings]
+        lines = [f"listener {self.port} {LOOPBACK}", "user root", *self.settings]
         file.write_text("\n".join(lines) + "\n", encoding="utf-8")
         with (self.directory / "mosquitto.log").open("ab") as log:
             self._process = subprocess.Popen([program("mosquitto"), "-c", file], stdout=log, stderr=log)
