@@ -33,7 +33,7 @@ from service.configuration.toml_lines import TomlLines
 MIB, GIB = 1024**2, 1024**3
 PATHS = ("data_directory", "recordings_directory", "scd", "motors", "tls_certificate", "tls_key")
 RELAY_PATHS = ("certificate", "key", "ca", "pinned", "password_file")
-GATEWAY_PATHS = ("certificate", "key", "ca", "pinned", "password_file")
+GATEWAY_PATHS = ("certificate", "key", "ca", "pinned", "password_file", "trusted")
 ACCESS_PATHS = ("ca", "client_secret_file")
 
 

@@ -9,10 +9,14 @@ import sys
 from collections.abc import Callable, Mapping
 from typing import BinaryIO
 
+import structlog
+
 from service.gateways.context import GatewayContext
 from service.storage import Repository, connect
 from service.storage.transaction_limits import limits_of
 from service.supervision.child import begin_child
+
+log = structlog.get_logger(__name__)
 
 Run = Callable[[GatewayContext], None]
 
@@ -35,7 +39,18 @@ def _mqtt() -> Run:
     return run
 
 
-KINDS: Mapping[str, Callable[[], Run]] = {"iec61850": _iec61850, "modbus": _modbus, "mqtt": _mqtt}
+def _opcua() -> Run:
+    from service.gateways.opcua.gateway import run
+
+    return run
+
+
+KINDS: Mapping[str, Callable[[], Run]] = {
+    "iec61850": _iec61850,
+    "modbus": _modbus,
+    "mqtt": _mqtt,
+    "opcua": _opcua,
+}
 """Each loads its gateway, with its library, in its own process alone."""
 
 
@@ -46,7 +61,12 @@ def main() -> None:
     settings, stop = begin_child(f"gateway {kind}")
     with _private_output() as output:
         repository = Repository(connect(settings.database_url, limits=limits_of(settings)))
-        run(GatewayContext(settings, repository, stop, ProblemTeller(output)))
+        try:
+            run(GatewayContext(settings, repository, stop, ProblemTeller(output)))
+        except Exception:  # the service starts it again
+            log.exception("the gateway failed")
+            # Python would wait for the thread that reads the service's pipe, and abort.
+            os._exit(1)
 
 
 def _private_output() -> BinaryIO:

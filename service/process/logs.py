@@ -10,7 +10,7 @@ from typing import Literal
 import structlog
 from structlog.typing import Processor
 
-QUIET = ("alembic", "boto3", "botocore", "httpx", "uvicorn.access")
+QUIET = ("alembic", "asyncua", "boto3", "botocore", "httpx", "uvicorn.access")
 """Libraries whose INFO messages are not logged."""
 
 QUIETER = ("python_multipart",)

@@ -7,6 +7,7 @@ from pydantic import BaseModel, ConfigDict
 from service.configuration.gateways.iec61850 import Iec61850Settings
 from service.configuration.gateways.modbus import ModbusSettings
 from service.configuration.gateways.mqtt import MqttSettings
+from service.configuration.gateways.opcua import OpcUaSettings
 
 
 class GatewaysSettings(BaseModel):
@@ -17,6 +18,7 @@ class GatewaysSettings(BaseModel):
     iec61850: Iec61850Settings | None = None
     modbus: ModbusSettings | None = None
     mqtt: MqttSettings | None = None
+    opcua: OpcUaSettings | None = None
 
     @property
     def configured(self) -> Sequence[str]:

@@ -1,0 +1,79 @@
+"""python -m benchmarks.gateways.opcua: the OPC UA server with 500 motors, and a client subscribed to all."""
+
+import argparse
+import asyncio
+import time
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from threading import Event, Thread
+from typing import Any
+
+from asyncua import Client
+
+from benchmarks.gateways.load import measure
+from benchmarks.gateways.plant import changing_plant
+from service.configuration.gateways.opcua import OpcUaSettings
+from service.configuration.gateways.settings import GatewaysSettings
+from service.configuration.settings import Settings
+from testing.ports import LOOPBACK, free_port
+from testing.service.gateways import running_gateways
+from testing.waiting import wait_until
+
+
+class Subscribed:
+    """A client in a thread of its own that is told of each change."""
+
+    def __init__(self, address: str, motors: list[str]) -> None:
+        self._address, self._motors = address, motors
+        self.healths: dict[str, int] = {}
+        self._end = Event()
+        self._thread = Thread(target=lambda: asyncio.run(self._follow()), daemon=True)
+        self._thread.start()
+
+    def datachange_notification(self, node: Any, value: int, _data: object) -> None:
+        """Keep the health of a motor."""
+        self.healths[str(node.nodeid.Identifier).split("/")[1]] = value
+
+    def close(self) -> None:
+        """End the connection."""
+        self._end.set()
+        self._thread.join(30)
+
+    async def _follow(self) -> None:
+        async with Client(self._address) as client:
+            subscription = await client.create_subscription(100, self)
+            nodes = [client.get_node(f"ns=2;s=motor/{motor}/DeviceHealth") for motor in self._motors]
+            await subscription.subscribe_data_change(nodes)
+            await asyncio.to_thread(self._end.wait)
+
+
+def main() -> None:
+    """Print the figures."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--motors", type=int, default=500)
+    parser.add_argument("--changes", type=int, default=60)
+    parser.add_argument("--idle-s", type=float, default=60.0)
+    wanted = parser.parse_args()
+    with TemporaryDirectory(prefix="statorwatch-") as directory:
+        plant = changing_plant(Path(directory), wanted.motors, now_ns=time.time_ns())
+        server = OpcUaSettings(port=free_port(), anonymous=True, unencrypted=True)
+        settings = Settings(data_directory=Path(directory), gateways=GatewaysSettings(opcua=server))
+        begun_s = time.monotonic()
+        with running_gateways(settings) as running:
+            print(f"serving after {time.monotonic() - begun_s:.1f} s")
+            (status,) = running.status()
+            assert status.process_id is not None
+            client = Subscribed(f"opc.tcp://{LOOPBACK}:{server.port}/", list(plant.motors))
+
+            def wait_for(motor: str, *, is_faulty: bool) -> None:
+                expected = 1 if is_faulty else 0
+                wait_until(lambda: client.healths.get(motor) == expected, f"the health of {motor}")
+
+            wait_for(plant.motors[-1], is_faulty=False)
+            load = measure(status.process_id, plant, wait_for, idle_s=wanted.idle_s, changes=wanted.changes)
+            client.close()
+    print(f"{wanted.motors} motors: {load}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,1 @@
+"""An OPC UA server that tells the health of motors and relays."""

@@ -1,0 +1,152 @@
+"""The OPC UA gateway: follows the plant's state, and offers it as the nodes of a server."""
+
+import asyncio
+import socket
+from pathlib import Path
+from typing import Final
+
+import structlog
+from asyncua import Server, ua
+from asyncua.crypto.truststore import TrustStore
+from asyncua.crypto.validator import CertificateValidator, CertificateValidatorOptions
+from asyncua.server.event_generator import EventGenerator
+
+from service.configuration.gateways.opcua import OpcUaSettings
+from service.gateways.context import GatewayContext
+from service.gateways.opcua.address_space import OURS, PlantNodes
+from service.gateways.opcua.certificate import own_certificate
+from service.gateways.opcua.history import TrendHistory, utc
+from service.gateways.opcua.methods import PlantMethods
+from service.gateways.opcua.users import PlantRules, ServiceUsers
+from service.gateways.opcua.values import SEVERITIES
+from service.gateways.plant_state.figures import PlantChange
+from service.process.installation import installation_id
+from service.storage.records import Alarm
+
+log = structlog.get_logger(__name__)
+
+LOOK_S: Final = 1.0
+"""Longest wait for a change before it is seen whether the service is gone."""
+LARGEST_MESSAGE: Final = 4 * 1024**2
+ENCRYPTED: Final = (
+    ua.SecurityPolicyType.Basic256Sha256_SignAndEncrypt,
+    ua.SecurityPolicyType.Aes128Sha256RsaOaep_SignAndEncrypt,
+    ua.SecurityPolicyType.Aes256Sha256RsaPss_SignAndEncrypt,
+)
+EVENT_FIELDS: Final = (
+    ("Alarm", ua.VariantType.String),
+    ("Motor", ua.VariantType.String),
+    ("Kind", ua.VariantType.String),
+    ("State", ua.VariantType.String),
+    ("Standing", ua.VariantType.Boolean),
+)
+
+
+def run(context: GatewayContext) -> None:
+    """Serve until the service is gone."""
+    settings = context.settings.gateways.opcua
+    assert settings is not None  # noqa: S101 - it was started for them
+    asyncio.run(_serve(context, settings))
+
+
+async def _serve(context: GatewayContext, settings: OpcUaSettings) -> None:
+    server = await _server(context, settings)
+    nodes = PlantNodes(server)
+    await nodes.begin()
+    await PlantMethods(server, context.repository, context.settings).begin()
+    server.iserver.history_manager.set_storage(TrendHistory(context.repository, nodes.histories))
+    events = await _events(server)
+    follower = context.follower()
+    is_first = True
+    try:
+        while not context.stop.is_set():
+            change = await asyncio.to_thread(follower.next_change, context.stop, longest_s=LOOK_S)
+            if change is not None:
+                await nodes.tell(change)
+            if server.bserver is None and change is not None:
+                await _start(context, settings, server)
+            elif change is not None and not is_first:
+                await _tell_alarms(events, change)
+            is_first = is_first and change is None
+            if server.bserver is not None:
+                context.tell(follower.problem)
+    finally:
+        follower.close()
+        if server.bserver is not None:
+            await server.stop()
+
+
+async def _server(context: GatewayContext, settings: OpcUaSettings) -> Server:
+    data_directory = context.settings.data_directory
+    uri = f"urn:statorwatch:{installation_id(data_directory)}"
+    server = Server(
+        user_manager=ServiceUsers(context.repository, context.settings.access, anonymous=settings.anonymous)
+    )
+    await server.init()
+    server.set_endpoint(f"opc.tcp://{settings.bind_address}:{settings.port}/")
+    server.set_server_name("StatorWatch")
+    await server.set_application_uri(uri)
+    server.iserver.max_connections = settings.max_connections
+    server.limits.max_message_size = LARGEST_MESSAGE
+    certificate, key = settings.certificate, settings.key
+    if certificate is None or key is None:
+        certificate, key = own_certificate(data_directory, uri, str(settings.bind_address))
+    await server.load_certificate(certificate)
+    await server.load_private_key(key)
+    if settings.trusted is not None:
+        server.set_certificate_validator(await _validator(settings.trusted))
+    policies = list(ENCRYPTED)
+    if settings.unencrypted:
+        policies.append(ua.SecurityPolicyType.NoSecurity)
+    server.set_security_policy(policies, permission_ruleset=PlantRules())
+    tokens: list[type] = [ua.UserNameIdentityToken]
+    if settings.anonymous:
+        tokens.append(ua.AnonymousIdentityToken)
+    server.set_identity_tokens(tokens)
+    return server
+
+
+async def _validator(trusted: Path) -> CertificateValidator:
+    store = TrustStore([trusted], [])
+    await store.load()
+    options = CertificateValidatorOptions.TRUSTED_VALIDATION | CertificateValidatorOptions.PEER_CLIENT
+    return CertificateValidator(options, store)
+
+
+async def _start(context: GatewayContext, settings: OpcUaSettings, server: Server) -> None:
+    """Listen; where the port is taken, say so and try again with the next change or end."""
+    with socket.socket() as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind((str(settings.bind_address), settings.port))
+        except OSError as error:
+            context.tell(f"{settings.bind_address}:{settings.port}: {error.strerror}")
+            raise SystemExit(1) from error
+    await server.start()
+    log.info("serving OPC UA", port=settings.port)
+
+
+async def _events(server: Server) -> EventGenerator:
+    index = await server.get_namespace_index(OURS)
+    kind = await server.create_custom_event_type(
+        index, "MotorAlarmEventType", ua.ObjectIds.BaseEventType, list(EVENT_FIELDS)
+    )
+    return await server.get_event_generator(kind)
+
+
+async def _tell_alarms(events: EventGenerator, change: PlantChange) -> None:
+    """Send an event for each alarm that is new, has changed, or is over."""
+    for alarm in change.alarms:
+        await _send(events, alarm, str(alarm.state))
+    for gone in change.alarms_gone:
+        await _send(events, change.before.alarms[gone], "normal")
+
+
+async def _send(events: EventGenerator, alarm: Alarm, state: str) -> None:
+    event = events.event
+    event.Alarm, event.Motor, event.Kind = alarm.id, alarm.motor or "", str(alarm.kind)
+    event.State, event.Standing = state, alarm.standing and state != "normal"
+    event.Severity = SEVERITIES[alarm.priority]
+    event.SourceName = alarm.place
+    event.Time = utc(alarm.changed_ns)
+    await events.trigger(message=alarm.reason)

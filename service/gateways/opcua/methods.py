@@ -1,0 +1,103 @@
+"""Methods of the server: have a motor recorded, and acknowledge an alarm. Each needs the right role."""
+
+import asyncio
+import time
+from collections.abc import Callable
+from typing import Final
+
+import structlog
+from asyncua import Server, ua
+from sqlalchemy.exc import SQLAlchemyError
+
+from service.access.permissions import Permission
+from service.configuration.settings import Settings
+from service.gateways.opcua.address_space import OURS
+from service.gateways.opcua.users import CALLER
+from service.storage import NotFoundError, Repository, StorageError
+from service.storage.records import Actor
+from service.timing.database_silence import database_trouble
+
+log = structlog.get_logger(__name__)
+
+LONGEST: Final = 500
+TEXT: Final = ua.VariantType.String
+
+
+class PlantMethods:
+    """The methods, on an object of their own."""
+
+    def __init__(self, server: Server, repository: Repository, settings: Settings) -> None:
+        self._server = server
+        self._repository = repository
+        self._settings = settings
+
+    async def begin(self) -> None:
+        """Make the object with its methods."""
+        index = await self._server.get_namespace_index(OURS)
+        service = await self._server.nodes.objects.add_object(
+            ua.NodeId("service", index), ua.QualifiedName("StatorWatch", index)
+        )
+        await service.add_method(
+            ua.NodeId("service/TriggerRecording", index),
+            ua.QualifiedName("TriggerRecording", index),
+            self._trigger,
+            [_argument("Motor", "Name of the motor")],
+            [_argument("Request", "Id of the recording request")],
+        )
+        await service.add_method(
+            ua.NodeId("service/Acknowledge", index),
+            ua.QualifiedName("Acknowledge", index),
+            self._acknowledge,
+            [_argument("Alarm", "Id of the alarm"), _argument("Comment", "Why; may be empty")],
+            [],
+        )
+
+    async def _trigger(self, _parent: ua.NodeId, motor: ua.Variant) -> object:
+        def request(by: Actor) -> list[ua.Variant]:
+            made = self._repository.request_recording(
+                str(motor.Value)[:LONGEST],
+                by=by,
+                now_ns=time.time_ns(),
+                most_open=self._settings.max_open_requests,
+            )
+            return [ua.Variant(made.id, TEXT)]
+
+        return await _allowed(Permission.TRIGGER, request)
+
+    async def _acknowledge(self, _parent: ua.NodeId, alarm: ua.Variant, comment: ua.Variant) -> object:
+        def acknowledge(by: Actor) -> list[ua.Variant]:
+            words = str(comment.Value or "").strip()[:LONGEST].replace("\x00", "")
+            self._repository.acknowledge_alarm(
+                str(alarm.Value)[:LONGEST], by=by, now_ns=time.time_ns(), comment=words or None
+            )
+            return []
+
+        return await _allowed(Permission.ACKNOWLEDGE, acknowledge)
+
+
+async def _allowed(permission: Permission, work: Callable[[Actor], list[ua.Variant]]) -> object:
+    """Return what the work gives, or the status that tells the client why there is nothing."""
+    caller = CALLER.get()
+    if caller is None or caller.actor is None or not caller.may(permission):
+        return ua.StatusCode(ua.StatusCodes.BadUserAccessDenied)
+    try:
+        return await asyncio.to_thread(work, caller.actor)
+    except NotFoundError as error:
+        log.info("a method was refused", reason=str(error))
+        return ua.StatusCode(ua.StatusCodes.BadNotFound)
+    except StorageError as error:
+        log.info("a method was refused", reason=str(error))
+        return ua.StatusCode(ua.StatusCodes.BadInvalidState)
+    except SQLAlchemyError as error:
+        log.warning("a method failed", error=database_trouble(error))
+        return ua.StatusCode(ua.StatusCodes.BadResourceUnavailable)
+
+
+def _argument(name: str, meaning: str) -> ua.Argument:
+    return ua.Argument(
+        Name=name,
+        DataType=ua.NodeId(ua.ObjectIds.String),
+        ValueRank=-1,
+        ArrayDimensions=[],
+        Description=ua.LocalizedText(meaning),
+    )

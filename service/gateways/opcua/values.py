@@ -1,0 +1,137 @@
+"""From what is told of motors and relays to OPC UA values, with status and the record's time."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Final
+
+from asyncua import ua
+
+from service.gateways.opcua.history import EPOCH, utc
+from service.gateways.plant_state.device_health import DeviceHealth
+from service.gateways.plant_state.figures import MotorFigures, Quality, RelayFigures
+from service.storage.records import Quantity
+from service.storage.states import AlarmPriority
+
+HEALTHS: Final[Mapping[DeviceHealth, int]] = {
+    DeviceHealth.NORMAL: 0,
+    DeviceHealth.FAILURE: 1,
+    DeviceHealth.CHECK_FUNCTION: 2,
+    DeviceHealth.OFF_SPEC: 3,
+    DeviceHealth.MAINTENANCE_REQUIRED: 4,
+}
+"""DeviceHealthEnumeration of OPC 10000-100."""
+
+STATUS: Final[Mapping[Quality, int]] = {
+    Quality.GOOD: ua.StatusCodes.Good,
+    Quality.UNCERTAIN: ua.StatusCodes.UncertainLastUsableValue,
+    Quality.BAD: ua.StatusCodes.BadWaitingForInitialData,
+}
+SEVERITIES: Final[Mapping[AlarmPriority, int]] = {
+    AlarmPriority.CRITICAL: 900,
+    AlarmPriority.HIGH: 700,
+    AlarmPriority.MEDIUM: 500,
+    AlarmPriority.LOW: 300,
+}
+DOUBLE, TEXT, TIME = ua.VariantType.Double, ua.VariantType.String, ua.VariantType.DateTime
+
+
+INITIAL: Final[Mapping[ua.VariantType, object]] = {
+    DOUBLE: 0.0,
+    TEXT: "",
+    TIME: EPOCH,
+    ua.VariantType.Boolean: False,
+    ua.VariantType.UInt32: 0,
+}
+"""What a node is made with; its value is written before any client comes."""
+
+
+@dataclass(frozen=True, slots=True)
+class MotorVariable:
+    """A variable of each motor. meaning: for people. read: its value; None where it is not known."""
+
+    name: str
+    kind: ua.VariantType
+    meaning: str
+    read: Callable[[MotorFigures], object]
+
+
+def _level_low(motor: MotorFigures) -> float | None:
+    return None if motor.mu_f_ci95 is None else motor.mu_f_ci95[0]
+
+
+def _level_high(motor: MotorFigures) -> float | None:
+    return None if motor.mu_f_ci95 is None else motor.mu_f_ci95[1]
+
+
+def _change_low(motor: MotorFigures) -> float | None:
+    return None if motor.change_ci95 is None else motor.change_ci95[0]
+
+
+def _change_high(motor: MotorFigures) -> float | None:
+    return None if motor.change_ci95 is None else motor.change_ci95[1]
+
+
+MOTOR_VARIABLES: Final = (
+    MotorVariable("State", TEXT, "healthy, watch, fault or unknown", lambda one: str(one.state)),
+    MotorVariable("Kind", TEXT, "what stands out", lambda one: str(one.kind)),
+    MotorVariable("Phase", TEXT, "phase of shorted turns", lambda one: one.phase),
+    MotorVariable("FaultLevel", DOUBLE, "share of the phase's turns", lambda one: one.mu_f),
+    MotorVariable("FaultLevelLow", DOUBLE, "lower end of its 95 % interval", _level_low),
+    MotorVariable("FaultLevelHigh", DOUBLE, "upper end of its 95 % interval", _level_high),
+    MotorVariable("Change", DOUBLE, "of the level since the reference", lambda one: one.change),
+    MotorVariable("ChangeLow", DOUBLE, "lower end of its 95 % interval", _change_low),
+    MotorVariable("ChangeHigh", DOUBLE, "upper end of its 95 % interval", _change_high),
+    MotorVariable("DetectionLimit", DOUBLE, "of the latest record", lambda one: one.detection_limit),
+    MotorVariable("Load", DOUBLE, "over the rated load", lambda one: one.load_level),
+    MotorVariable("Rotor", TEXT, "watch or fault", lambda one: one.rotor and str(one.rotor)),
+    MotorVariable("Stale", ua.VariantType.Boolean, "the latest record is too old", lambda one: one.stale),
+    MotorVariable("AsOf", TIME, "time of the latest record", lambda one: _time(one.as_of_ns)),
+    MotorVariable("Since", TIME, "since when the state is so", lambda one: _time(one.since_ns)),
+    MotorVariable("Advice", TEXT, "what to do", lambda one: one.advice),
+    MotorVariable("Reasons", TEXT, "why", lambda one: "; ".join(one.reasons)),
+    MotorVariable("Alarms", ua.VariantType.UInt32, "that call for somebody", lambda one: one.alarms),
+    MotorVariable("Priority", TEXT, "of the most urgent alarm", lambda one: str(one.priority or "")),
+    MotorVariable("QualityReason", TEXT, "why values are not good", lambda one: one.quality_reason),
+)  # fmt: skip
+HISTORIES: Final[Mapping[str, Quantity]] = {"FaultLevel": "mu_f", "Load": "load_level"}
+"""Variables with a history, and the quantity of the trend."""
+
+
+def motor_value(variable: MotorVariable, motor: MotorFigures) -> ua.DataValue:
+    """Return the value of a motor's variable; one that is not known is bad, or an empty text."""
+    value = variable.read(motor)
+    status = STATUS[motor.quality]
+    if value is None and variable.kind is TEXT:
+        value = ""
+    if value is None:
+        return ua.DataValue(
+            StatusCode=ua.StatusCode(ua.StatusCodes.BadNoData), SourceTimestamp=_time(motor.as_of_ns)
+        )
+    return ua.DataValue(
+        ua.Variant(value, variable.kind),
+        StatusCode=ua.StatusCode(status),
+        SourceTimestamp=_time(motor.as_of_ns),
+    )
+
+
+def health_value(health: DeviceHealth, quality: Quality, time_ns: int | None) -> ua.DataValue:
+    """Return the health of a device. It is told also where the motor's figures are not: that is its point."""
+    status = ua.StatusCodes.Good if quality is Quality.BAD else STATUS[quality]
+    return ua.DataValue(
+        ua.Variant(HEALTHS[health], ua.VariantType.Int32),
+        StatusCode=ua.StatusCode(status),
+        SourceTimestamp=_time(time_ns),
+    )
+
+
+def relay_value(text: str, relay: RelayFigures) -> ua.DataValue:
+    """Return a text about a relay."""
+    return ua.DataValue(
+        ua.Variant(text, TEXT),
+        StatusCode=ua.StatusCode(STATUS[relay.quality]),
+        SourceTimestamp=_time(relay.changed_ns),
+    )
+
+
+def _time(time_ns: int | None) -> object:
+    return None if time_ns is None else utc(time_ns)

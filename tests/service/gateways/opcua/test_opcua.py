@@ -1,0 +1,294 @@
+"""OPC UA clients see motors and relays, their history and their alarms, as far as their users may."""
+
+import asyncio
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+from collections.abc import Awaitable, Callable, Iterator
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import pytest
+from asyncua import Client, ua
+from asyncua.crypto.security_policies import SecurityPolicyBasic256Sha256
+
+from service.access.passwords import hashed
+from service.configuration.gateways.opcua import OpcUaSettings
+from service.configuration.gateways.settings import GatewaysSettings
+from service.configuration.settings import Settings
+from service.gateways.opcua.certificate import own_certificate
+from service.recording_store.folder import FolderStore
+from service.storage import Repository
+from service.storage.records import Role
+from service.storage.states import AlarmKind, LinkState
+from testing.not_installed import not_installed
+from testing.ports import LOOPBACK, free_port
+from testing.service.accounts import TESTS
+from testing.service.conditions import FAULT, HEALTHY, tell
+from testing.service.diagnosed import add_diagnosed
+from testing.service.gateways import running_gateways
+from testing.service.job_runner import register_runner
+from testing.service.plants import NOW_NS, SECOND_NS, fault
+from testing.waiting import eventually
+
+PASSWORD = "correct horse battery"  # noqa: S105 - of a test's user
+PUMP = "motor/PUMP-A1"
+PEER = Path(sys.prefix) / "open62541"
+"""Where .ci/run installs the other stack's client."""
+
+
+def settings_of(directory: Path, **table: object) -> Settings:
+    server = OpcUaSettings.model_validate({"port": free_port(), **table})
+    return Settings(data_directory=directory, stale_after_days=3650, gateways=GatewaysSettings(opcua=server))
+
+
+def address_of(settings: Settings) -> str:
+    assert settings.gateways.opcua is not None
+    return f"opc.tcp://{LOOPBACK}:{settings.gateways.opcua.port}/"
+
+
+def add_user(repository: Repository, name: str, role: Role) -> None:
+    repository.add_user(name, {role}, password=hashed(PASSWORD), by=TESTS, now_ns=NOW_NS)
+
+
+def done(repository: Repository) -> list[tuple[str, str, str]]:
+    """What the audit trail has: action, by whom, from where."""
+    with repository.audit_trail() as trail:
+        return [(one.action, one.actor, one.origin) for one in trail.entries()]
+
+
+@pytest.fixture
+def open_settings(repository: Repository, tmp_path: Path) -> Iterator[Settings]:
+    """Of a server at which anybody may look, without encryption."""
+    chosen = settings_of(tmp_path, anonymous=True, unencrypted=True)
+    with running_gateways(chosen):
+        yield chosen
+
+
+async def encrypted(settings: Settings, user: str, password: str = PASSWORD) -> Client:
+    """A client with a certificate of its own, not connected yet."""
+    folder = settings.data_directory / "client"
+    folder.mkdir(exist_ok=True)
+    certificate, key = own_certificate(folder, "urn:statorwatch:test-client", LOOPBACK)
+    client = Client(address_of(settings))
+    client.application_uri = "urn:statorwatch:test-client"
+    client.set_user(user)
+    client.set_password(password)
+    await client.set_security(
+        SecurityPolicyBasic256Sha256,
+        certificate=str(certificate),
+        private_key=str(key),
+        server_certificate=str(settings.data_directory / "opcua-certificate.der"),
+        mode=ua.MessageSecurityMode.SignAndEncrypt,
+    )
+    return client
+
+
+def looking(settings: Settings, look: Callable[[Client], Awaitable[Any]]) -> Any:
+    """What a client that is nobody sees."""
+
+    async def ask() -> Any:
+        async with Client(address_of(settings)) as client:
+            return await look(client)
+
+    return asyncio.run(ask())
+
+
+def node(client: Client, path: str) -> Any:
+    return client.get_node(f"ns=2;s={path}")
+
+
+def value(settings: Settings, path: str) -> Any:
+    """Value, status and time of a variable."""
+
+    async def read(client: Client) -> Any:
+        return await node(client, path).read_data_value(raise_on_bad_status=False)
+
+    return looking(settings, read)
+
+
+def test_a_fault_is_a_failure_with_the_time_of_its_record(
+    repository: Repository, open_settings: Settings
+) -> None:
+    before = value(open_settings, f"{PUMP}/State")
+    assert before.StatusCode.value == ua.StatusCodes.BadWaitingForInitialData
+    assert value(open_settings, f"{PUMP}/DeviceHealth").Value.Value == 2
+    tell(repository, FAULT)
+    assert eventually(lambda: value(open_settings, f"{PUMP}/State").Value.Value == "fault")
+    level = value(open_settings, f"{PUMP}/FaultLevel")
+    assert (level.Value.Value, level.StatusCode.value) == (0.0121, ua.StatusCodes.Good)
+    assert level.SourceTimestamp.timestamp() * 10**9 == NOW_NS
+    assert value(open_settings, f"{PUMP}/DeviceHealth").Value.Value == 1
+    assert value(open_settings, f"{PUMP}/Load").StatusCode.value == ua.StatusCodes.BadNoData
+    assert value(open_settings, f"{PUMP}/Phase").Value.Value == "b"
+
+
+def test_an_old_condition_is_uncertain(repository: Repository, tmp_path: Path) -> None:
+    tell(repository, HEALTHY)
+    chosen = settings_of(tmp_path, anonymous=True, unencrypted=True)
+    chosen = chosen.model_copy(update={"stale_after_days": 0.01})
+    with running_gateways(chosen):
+        found = value(chosen, f"{PUMP}/FaultLevel")
+    assert (found.Value.Value, found.StatusCode.value) == (0.0004, ua.StatusCodes.UncertainLastUsableValue)
+
+
+def test_only_what_changes_is_sent_to_a_subscription(repository: Repository, open_settings: Settings) -> None:
+    tell(repository, HEALTHY)
+    assert eventually(lambda: value(open_settings, f"{PUMP}/State").Value.Value == "healthy")
+    sent: list[tuple[str, object]] = []
+
+    class Seen:
+        def datachange_notification(self, which: Any, said: object, _data: object) -> None:
+            sent.append((which.nodeid.Identifier, said))
+
+    async def subscribe(client: Client) -> None:
+        subscription = await client.create_subscription(100, Seen())
+        names = [f"{PUMP}/State", f"{PUMP}/DeviceHealth", "motor/FAN-A2/State", "relay/A1_SEL710/Link"]
+        await subscription.subscribe_data_change([node(client, name) for name in names])
+        while len(sent) < len(names):
+            await asyncio.sleep(0.05)
+        sent.clear()
+        await asyncio.to_thread(tell, repository, FAULT)
+        await asyncio.to_thread(
+            repository.set_link_state, "A1_SEL710", LinkState.UP, now_ns=NOW_NS, reason=None
+        )
+        while len(sent) < 3:
+            await asyncio.sleep(0.05)
+
+    looking(open_settings, lambda client: asyncio.wait_for(subscribe(client), 30))
+    assert sorted(sent) == [
+        (f"{PUMP}/DeviceHealth", 1),
+        (f"{PUMP}/State", "fault"),
+        ("relay/A1_SEL710/Link", "up"),
+    ]
+
+
+def test_an_alarm_is_an_event(repository: Repository, open_settings: Settings) -> None:
+    seen: list[Any] = []
+
+    class Seen:
+        def event_notification(self, event: Any) -> None:
+            seen.append(event)
+
+    async def subscribe(client: Client) -> None:
+        kind = await client.nodes.base_event_type.get_child("2:MotorAlarmEventType")
+        subscription = await client.create_subscription(100, Seen())
+        await subscription.subscribe_events(evtypes=kind)
+        await asyncio.to_thread(
+            repository.raise_alarm, "A1_SEL710", AlarmKind.FILE_REFUSED, "E1.CEV", "cut off", now_ns=NOW_NS
+        )
+        while not seen:
+            await asyncio.sleep(0.05)
+
+    looking(open_settings, lambda client: asyncio.wait_for(subscribe(client), 30))
+    (event, *_) = seen
+    assert (event.Kind, event.SourceName, event.Message.Text) == ("file-refused", "A1_SEL710", "cut off")
+    assert event.Severity in (300, 500, 700, 900)
+
+
+def test_nobody_comes_in_without_encryption_or_a_user_unless_told(
+    repository: Repository, tmp_path: Path
+) -> None:
+    chosen = settings_of(tmp_path)
+    with running_gateways(chosen), pytest.raises(Exception):  # noqa: B017, PT011 - several kinds
+        value(chosen, f"{PUMP}/State")
+
+
+def test_users_may_what_their_roles_allow(repository: Repository, tmp_path: Path) -> None:
+    add_user(repository, "vera", Role.VIEWER)
+    add_user(repository, "otto", Role.OPERATOR)
+    add_user(repository, "sam", Role.SECADM)
+    chosen = settings_of(tmp_path)
+
+    async def trigger(user: str, password: str = PASSWORD) -> str:
+        client = await encrypted(chosen, user, password)
+        try:
+            async with client:
+                service = node(client, "service")
+                return str(await service.call_method("2:TriggerRecording", "PUMP-A1"))
+        except (TimeoutError, ua.UaStatusCodeError, ConnectionError) as refused:
+            return type(refused).__name__
+
+    with running_gateways(chosen):
+        assert asyncio.run(trigger("vera")) == "BadUserAccessDenied"
+        assert asyncio.run(trigger("sam")) == "BadUserAccessDenied"
+        assert asyncio.run(trigger("otto", "wrong")) == "BadUserAccessDenied"
+        request = asyncio.run(trigger("otto"))
+    assert repository.recording_request(request).motor == "PUMP-A1"
+    assert ("recording-requested", "otto", "opcua") in done(repository)
+
+
+def test_open62541_reads_encrypted_with_history_and_has_a_motor_recorded(
+    repository: Repository, tmp_path: Path
+) -> None:
+    if not PEER.exists():
+        not_installed(f"no open62541: python -m pip install --no-deps --target {PEER} o6==2.2.0")
+    add_user(repository, "otto", Role.OPERATOR)
+    store = FolderStore(tmp_path / "recordings")
+    register_runner(repository)
+    for number, level in enumerate((0.01, 0.02, 0.03)):
+        add_diagnosed(repository, store, fault(level), NOW_NS + number * SECOND_NS, name=f"E{number}")
+    tell(repository, FAULT)
+    chosen = settings_of(tmp_path)
+    folder = tmp_path / "client"
+    folder.mkdir()
+    certificate, key = own_certificate(folder, "urn:statorwatch:test-client", LOOPBACK)
+    script = Path(__file__).with_name("open62541_client.py")
+    command = [sys.executable, str(script), str(PEER), address_of(chosen), str(certificate), str(key), "otto"]
+    with running_gateways(chosen):
+        peer = subprocess.run(
+            command, input=f"{PASSWORD}\n", capture_output=True, text=True, timeout=100, check=False
+        )
+    assert peer.returncode == 0, peer.stdout[-2000:] + peer.stderr[-2000:]
+    seen = json.loads(peer.stdout.splitlines()[-1])
+    assert (seen["state"], seen["level"], seen["health"]) == ("fault", 0.0121, 1)
+    assert seen["history"] == [0.01, 0.02, 0.03]
+    assert ("recording-requested", "otto", "opcua") in done(repository)
+    assert repository.recording_requests(motor="PUMP-A1", limit=1).items
+
+
+def test_a_hundred_silent_clients_and_garbled_ones_keep_nobody_out(
+    repository: Repository, open_settings: Settings
+) -> None:
+    tell(repository, HEALTHY)
+    assert open_settings.gateways.opcua is not None
+    port = open_settings.gateways.opcua.port
+    crowd = [socket.create_connection((LOOPBACK, port)) for _ in range(90)]
+    for number, one in enumerate(crowd):
+        with suppress(OSError):
+            one.sendall(bytes([number]) * (1 + number) if number % 2 else b"HELF\xff\xff\xff\x7f" + b"x" * 50)
+    assert eventually(lambda: value(open_settings, f"{PUMP}/State").Value.Value == "healthy")
+    for one in crowd:
+        one.close()
+
+
+def test_a_gateway_that_is_killed_is_back_with_the_right_values(
+    repository: Repository, tmp_path: Path
+) -> None:
+    tell(repository, HEALTHY)
+    chosen = settings_of(tmp_path, anonymous=True, unencrypted=True)
+
+    def state() -> object:
+        try:
+            return value(chosen, f"{PUMP}/State").Value.Value
+        except (TimeoutError, OSError, ua.UaError):
+            return None
+
+    with running_gateways(chosen) as gateways:
+        assert state() == "healthy"
+        first = gateways.status()[0].process_id
+        assert first is not None
+        os.kill(first, signal.SIGKILL)
+        tell(repository, FAULT)
+        assert eventually(lambda: state() == "fault")
+
+
+def test_nothing_goes_in_clear_beyond_loopback() -> None:
+    with pytest.raises(ValueError, match="unencrypted"):
+        OpcUaSettings.model_validate({"bind_address": "10.0.0.1", "unencrypted": True})
+    with pytest.raises(ValueError, match="together"):
+        OpcUaSettings.model_validate({"certificate": "mcc.der"})
