@@ -252,7 +252,7 @@ def _table(text: str, config: Path) -> dict[str, object]:
     _anchor_each(table, "relays", RELAY_PATHS, config.absolute().parent)
     _anchor_each(table.get("notifications"), "channels", CHANNEL_PATHS, config.absolute().parent)
     _anchor_each(table, "audit", CHANNEL_PATHS, config.absolute().parent)
-    _anchor_each({"gateways": table.get("gateways")}, "gateways", GATEWAY_PATHS, config.absolute().parent)
+    _anchor_each(table, "gateways", GATEWAY_PATHS, config.absolute().parent)
     return table
 
 

@@ -18,6 +18,7 @@ from core.machines.parameters import Motor
 from core.operation import Operation
 from core.recordings import comtrade, read
 from core.rotor.finding import RotorFinding
+from core.rotor.swing_findings import EccentricityFinding, PulsationFinding
 from core.starts.examined import ExaminedStart
 from core.supply.figures import SupplyFigures
 from core.units import NANOSECONDS_PER_DAY, NANOSECONDS_PER_SECOND
@@ -40,7 +41,7 @@ from testing.service.database import make_database
 from testing.service.job_runner import RUNNER, register_runner
 from testing.service.observations import records_of_a_motor
 from testing.service.plants import fault, healthy, undiagnosable
-from testing.service.rotor_and_supply import SOUND_ROTOR, SUPPLY
+from testing.service.rotor_and_supply import ECCENTRIC_ROTOR, SOUND_ROTOR, SUPPLY, SWINGING_LOAD
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 HOUR_NS = 3600 * NANOSECONDS_PER_SECOND
@@ -81,10 +82,22 @@ class _Seeding:
         *,
         rotor: RotorFinding | None = None,
         supply: SupplyFigures | None = None,
+        eccentricity: EccentricityFinding | None = None,
+        pulsation: PulsationFinding | None = None,
     ) -> str:
         """Add a recording without a waveform that can be read, and its diagnosis."""
         files = {"EVENT.CFF": f"{motor} {time_ns}".encode()}
-        return self.add(motor, files, diagnosis, time_ns, observed, rotor=rotor, supply=supply)
+        return self.add(
+            motor,
+            files,
+            diagnosis,
+            time_ns,
+            observed,
+            rotor=rotor,
+            supply=supply,
+            eccentricity=eccentricity,
+            pulsation=pulsation,
+        )
 
     def add(
         self,
@@ -97,6 +110,8 @@ class _Seeding:
         *,
         rotor: RotorFinding | None = None,
         supply: SupplyFigures | None = None,
+        eccentricity: EccentricityFinding | None = None,
+        pulsation: PulsationFinding | None = None,
     ) -> str:
         """Add a recording and its diagnosis; return its id."""
         added = self.repository.add_recording(self.store.store(files), motor=motor, now_ns=time_ns)
@@ -112,6 +127,8 @@ class _Seeding:
             start=start,
             rotor=rotor,
             supply=supply,
+            eccentricity=eccentricity,
+            pulsation=pulsation,
         )
         return added.recording.id
 
@@ -179,7 +196,16 @@ def acknowledge_all(repository: Repository, motor: str) -> None:
 def _seed_motors(seeding: _Seeding, data: Path) -> None:
     repository, now_ns = seeding.repository, seeding.now_ns
     for observed in _developing(now_ns):
-        seeding.record(FAULTY, fault(), observed.time_ns, observed, rotor=SOUND_ROTOR, supply=SUPPLY)
+        seeding.record(
+            FAULTY,
+            fault(),
+            observed.time_ns,
+            observed,
+            rotor=SOUND_ROTOR,
+            supply=SUPPLY,
+            eccentricity=ECCENTRIC_ROTOR,
+            pulsation=SWINGING_LOAD,
+        )
     seeding.fold(FAULTY)
     note = Event(now_ns - 40 * NANOSECONDS_PER_DAY, EventKind.NOTE, "bearings greased")
     repository.add_event(FAULTY, note, by=BY, now_ns=now_ns)

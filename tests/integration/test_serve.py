@@ -1,5 +1,6 @@
 """`mcc serve` comes up whole or says why not, and goes down whole."""
 
+import json
 import os
 import re
 import shutil
@@ -13,6 +14,7 @@ from pathlib import Path
 import httpx
 import pytest
 
+import mms
 import scl
 from core.error_words import one_line
 from service.application.serve import serve
@@ -20,6 +22,7 @@ from service.cli.run_service import TROUBLES
 from service.client.rest_client import ServiceClient
 from service.configuration.settings import Settings
 from service.demo import MOTORS
+from testing.ports import LOOPBACK, free_port
 from testing.service.processes import (
     START_LIMIT_S,
     descendants,
@@ -48,6 +51,25 @@ def test_every_part_is_documented_and_ready_and_sigterm_ends_every_process(tmp_p
         assert eventually(lambda: lost_sites(service.url) == ["FACTORY_A", "FACTORY_B"], 60)
         below = descendants(service.process_id)
         assert len(below) >= 3, "a collector and two workers"
+        assert service.stop() == 0
+        assert eventually(lambda: not any(is_alive(process_id) for process_id in below), 5)
+    assert "Traceback" not in service.log.read_text()
+
+
+def test_gateways_to_other_systems_run_beside_the_service_and_end_with_it(tmp_path: Path) -> None:
+    tables = {"iec61850": {"port": free_port()}, "modbus": {"port": free_port()}}
+    scd = switched_off_plant(tmp_path)
+    with running_service(tmp_path, scd, MCC_GATEWAYS=json.dumps(tables)) as service:
+
+        def integrations() -> list[tuple[object, object]]:
+            with ServiceClient(service.url) as client:
+                return [(one["kind"], one["problem"]) for one in client.items("/integrations")]
+
+        assert eventually(lambda: integrations() == [("iec61850", None), ("modbus", None)], 60)
+        with mms.Client.connect(LOOPBACK, tables["iec61850"]["port"]) as client:
+            reference = "MCCPUMP_A1/LPHD1.Proxy.stVal"
+            assert client.read(reference, mms.FunctionalConstraint.ST) is True
+        below = descendants(service.process_id)
         assert service.stop() == 0
         assert eventually(lambda: not any(is_alive(process_id) for process_id in below), 5)
     assert "Traceback" not in service.log.read_text()
