@@ -8,7 +8,7 @@ from benchmarks.wound_rotor.cases import MOTORS, Knowledge, Result, Subject, exa
 from core.diagnosis.verdict import Verdict
 from core.rotor.finding import RotorState
 
-LOADS, SEEDS, FIRST_SEED = (0.3, 0.6, 0.9), 8, 5_000
+LOADS, SEEDS, FIRST_SEED = (0.3, 0.6, 0.9), 28, 5_000
 RINGS: tuple[tuple[Knowledge, float], ...] = (
     ("shorted", 0.0),
     ("unknown", 0.0),
