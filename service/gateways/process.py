@@ -21,6 +21,12 @@ log = structlog.get_logger(__name__)
 Run = Callable[[GatewayContext], None]
 
 
+def _iec104() -> Run:
+    from service.gateways.iec104.gateway import run
+
+    return run
+
+
 def _iec61850() -> Run:
     from service.gateways.iec61850.gateway import run
 
@@ -46,6 +52,7 @@ def _opcua() -> Run:
 
 
 KINDS: Mapping[str, Callable[[], Run]] = {
+    "iec104": _iec104,
     "iec61850": _iec61850,
     "modbus": _modbus,
     "mqtt": _mqtt,

@@ -1,6 +1,5 @@
 """The IEC 61850 gateway: follows the plant's state and offers it as the data of an IED."""
 
-import os
 from importlib.metadata import version
 from pathlib import Path
 
@@ -14,6 +13,7 @@ from service.gateways.context import GatewayContext
 from service.gateways.iec61850.description import description
 from service.gateways.iec61850.logical_devices import PLANT, logical_devices
 from service.gateways.iec61850.values import meanings, motor_values, names, plant_values, unknown_values
+from service.gateways.kept_file import replace_file
 from service.gateways.plant_state.figures import PlantChange, PlantState
 
 log = structlog.get_logger(__name__)
@@ -116,7 +116,7 @@ class PlantIed:
         settings = self._settings
         texts = {device: motor for motor, device in self._devices.items()}
         revision = version("statorwatch")
-        _write(self._file, description(settings.ied_name, texts, plant=PLANT, revision=revision))
+        replace_file(self._file, description(settings.ied_name, texts, plant=PLANT, revision=revision))
         tls: TlsConfiguration | None = None if settings.tls is None else settings.tls.configuration()
         passwords = [] if settings.password_file is None else [_password(settings.password_file)]
         return Server(
@@ -136,13 +136,3 @@ class PlantIed:
 
 def _password(file: Path) -> str:
     return read_secret(file).decode("latin-1").removesuffix("\n").removesuffix("\r")
-
-
-def _write(file: Path, content: bytes) -> None:
-    """Replace the file at once: a reader, or a crash, sees the old or the new one."""
-    written = file.with_suffix(".new")
-    with written.open("wb") as output:
-        output.write(content)
-        output.flush()
-        os.fsync(output.fileno())
-    written.replace(file)

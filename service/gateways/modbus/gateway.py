@@ -1,8 +1,6 @@
 """The Modbus gateway: follows the plant's state and puts it into registers."""
 
 import asyncio
-import csv
-import os
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -10,6 +8,7 @@ import structlog
 
 from service.configuration.gateways.modbus import ModbusSettings
 from service.gateways.context import GatewayContext
+from service.gateways.kept_file import write_table
 from service.gateways.modbus.register_map import BLOCK, FIRST_BLOCK, MOST_MOTORS, NO_MOTOR, blocks, header
 from service.gateways.modbus.server import BoundedServer, Registers
 from service.gateways.numbering import MotorNumbers
@@ -66,7 +65,7 @@ class PlantRegisters:
     """Registers of the whole plant, and which motor has which."""
 
     def __init__(self, data_directory: Path) -> None:
-        """Raises NumberingError."""
+        """Raises KeptFileError."""
         self.registers = Registers()
         self.silence: str | None = None
         self._numbers = MotorNumbers(data_directory / NUMBERS)
@@ -90,7 +89,7 @@ class PlantRegisters:
         numbers = self._numbers.of(change.now.motors)
         self._too_many = sum(numbers[motor] >= MOST_MOTORS for motor in change.now.motors)
         if change.before.motors.keys() != change.now.motors.keys():
-            _write_map(self._map, numbers)
+            write_table(self._map, ("motor", "block", "first register"), _map_rows(numbers))
         self._state = change.now
         gone = {FIRST_BLOCK + BLOCK * numbers[motor]: NO_MOTOR for motor in change.motors_gone}
         self.registers.put({**gone, **blocks(change.now, numbers)})
@@ -106,14 +105,7 @@ class PlantRegisters:
         self.registers.put({0: header(self._state, blocks=count, alive=self._alive)})
 
 
-def _write_map(file: Path, numbers: Mapping[str, int]) -> None:
-    """Write which registers each motor has, for the people who set up the other system."""
-    written = file.with_suffix(".new")
-    with written.open("w", encoding="utf-8", newline="") as output:
-        table = csv.writer(output)
-        table.writerow(["motor", "block", "first register"])
-        for motor, number in sorted(numbers.items(), key=lambda one: one[1]):
-            table.writerow([motor, number, FIRST_BLOCK + BLOCK * number])
-        output.flush()
-        os.fsync(output.fileno())
-    written.replace(file)
+def _map_rows(numbers: Mapping[str, int]) -> list[tuple[str, int, int]]:
+    """Return which registers each motor has, by block."""
+    by_block = sorted(numbers.items(), key=lambda one: one[1])
+    return [(motor, number, FIRST_BLOCK + BLOCK * number) for motor, number in by_block]

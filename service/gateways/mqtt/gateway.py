@@ -5,8 +5,8 @@ from functools import partial
 
 from service.configuration.gateways.mqtt import MqttSettings
 from service.gateways.context import GatewayContext
+from service.gateways.kept_file import KeptFileError
 from service.gateways.mqtt.broker import stay_connected
-from service.gateways.mqtt.kept_file import KeptFileError
 from service.gateways.mqtt.plain_topics import PlainTopics
 from service.gateways.mqtt.plant_feed import PlantFeed
 from service.gateways.mqtt.sparkplug.edge_node import EdgeNode

@@ -3,7 +3,7 @@
 from collections.abc import Collection
 from pathlib import Path
 
-from service.gateways.mqtt.kept_file import KeptFileError, read_kept, write_kept
+from service.gateways.kept_file import KeptFileError, read_kept, write_kept
 
 TOPICS = "mqtt-topics.json"
 

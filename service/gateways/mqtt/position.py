@@ -4,7 +4,7 @@ from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-from service.gateways.mqtt.kept_file import KeptFileError, read_kept, write_kept
+from service.gateways.kept_file import KeptFileError, read_kept, write_kept
 
 POSITION = "mqtt-position.json"
 WINDOW = 200

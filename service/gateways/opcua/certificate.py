@@ -1,7 +1,6 @@
 """The server's own certificate: that of the settings, or one that it makes for itself."""
 
 import ipaddress
-import os
 import socket
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -11,6 +10,8 @@ from cryptography import x509
 from cryptography.hazmat.primitives import hashes, serialization
 from cryptography.hazmat.primitives.asymmetric import rsa
 from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
+
+from service.gateways.kept_file import replace_file
 
 CERTIFICATE: Final = "opcua-certificate.der"
 KEY: Final = "opcua-key.pem"
@@ -31,9 +32,9 @@ def own_certificate(data_directory: Path, application_uri: str, host: str) -> tu
             serialization.PrivateFormat.PKCS8,
             serialization.NoEncryption(),
         )
-        _write(key, pem)
+        replace_file(key, pem, private=True)
         signed = _signed(private, application_uri, host)
-        _write(certificate, signed.public_bytes(serialization.Encoding.DER))
+        replace_file(certificate, signed.public_bytes(serialization.Encoding.DER))
     return certificate, key
 
 
@@ -75,15 +76,3 @@ def _signed(private: rsa.RSAPrivateKey, application_uri: str, host: str) -> x509
         .add_extension(x509.SubjectKeyIdentifier.from_public_key(private.public_key()), critical=False)
         .sign(private, hashes.SHA256())
     )
-
-
-def _write(file: Path, content: bytes) -> None:
-    """Write a file that its owner alone may read."""
-    written = file.with_suffix(".new")
-    written.unlink(missing_ok=True)
-    written.touch(mode=0o600)
-    with written.open("wb") as output:
-        output.write(content)
-        output.flush()
-        os.fsync(output.fileno())
-    written.replace(file)

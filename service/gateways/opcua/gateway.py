@@ -57,18 +57,18 @@ async def _serve(context: GatewayContext, settings: OpcUaSettings) -> None:
     server.iserver.history_manager.set_storage(TrendHistory(context.repository, nodes.histories))
     events = await _events(server)
     follower = context.follower()
-    is_first = True
+    is_known = False
     try:
         while not context.stop.is_set():
             change = await asyncio.to_thread(follower.next_change, context.stop, longest_s=LOOK_S)
             if change is not None:
                 await nodes.tell(change)
-            if server.bserver is None and change is not None:
-                await _start(context, settings, server)
-            elif change is not None and not is_first:
+            if server.bserver is not None and change is not None:
                 await _tell_alarms(events, change)
-            is_first = is_first and change is None
-            if server.bserver is not None:
+            is_known = is_known or change is not None
+            if server.bserver is None and is_known:
+                context.tell(await _begun(settings, server))
+            elif is_known:
                 context.tell(follower.problem)
     finally:
         follower.close()
@@ -82,6 +82,7 @@ async def _server(context: GatewayContext, settings: OpcUaSettings) -> Server:
     server = Server(
         user_manager=ServiceUsers(context.repository, context.settings.access, anonymous=settings.anonymous)
     )
+    server.product_uri, server.manufacturer_name = "urn:statorwatch", "StatorWatch"
     await server.init()
     server.set_endpoint(f"opc.tcp://{settings.bind_address}:{settings.port}/")
     server.set_server_name("StatorWatch")
@@ -113,17 +114,17 @@ async def _validator(trusted: Path) -> CertificateValidator:
     return CertificateValidator(options, store)
 
 
-async def _start(context: GatewayContext, settings: OpcUaSettings, server: Server) -> None:
-    """Listen; where the port is taken, say so and try again with the next change or end."""
-    with socket.socket() as probe:
+async def _begun(settings: OpcUaSettings, server: Server) -> str | None:
+    """Listen. Return why that cannot be, None where it can; it is tried again."""
+    with socket.socket() as probe:  # the library is not to be started again after it failed
         probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             probe.bind((str(settings.bind_address), settings.port))
         except OSError as error:
-            context.tell(f"{settings.bind_address}:{settings.port}: {error.strerror}")
-            raise SystemExit(1) from error
+            return f"{settings.bind_address}:{settings.port}: {error.strerror}"
     await server.start()
     log.info("serving OPC UA", port=settings.port)
+    return None
 
 
 async def _events(server: Server) -> EventGenerator:

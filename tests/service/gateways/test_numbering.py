@@ -4,7 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from service.gateways.numbering import MotorNumbers, NumberingError
+from service.gateways.kept_file import KeptFileError
+from service.gateways.numbering import MotorNumbers
 
 
 def test_numbers_outlive_motors_and_processes(tmp_path: Path) -> None:
@@ -18,6 +19,6 @@ def test_numbers_outlive_motors_and_processes(tmp_path: Path) -> None:
 def test_a_file_that_is_something_else_is_told_and_kept(tmp_path: Path, text: str) -> None:
     file = tmp_path / "numbers.json"
     file.write_text(text, encoding="utf-8")
-    with pytest.raises(NumberingError, match=r"numbers\.json: expected"):
+    with pytest.raises(KeptFileError, match=r"numbers\.json: expected"):
         MotorNumbers(file)
     assert file.read_text(encoding="utf-8") == text

@@ -11,9 +11,9 @@ from aiomqtt import MqttError, Will
 from core.units import NANOSECONDS_PER_MILLISECOND
 from service.configuration.gateways.mqtt import MqttSettings, SparkplugSettings
 from service.gateways.context import GatewayContext
+from service.gateways.kept_file import KeptFileError, read_kept, write_kept
 from service.gateways.mqtt.broker import AT_LEAST_ONCE, Broker, first_of
 from service.gateways.mqtt.documents import VERSION
-from service.gateways.mqtt.kept_file import KeptFileError, read_kept, write_kept
 from service.gateways.mqtt.plant_feed import PlantFeed
 from service.gateways.mqtt.sparkplug.metrics import changed, of_motor
 from service.gateways.mqtt.sparkplug.payload import DataType, Metric, PayloadError, encode, is_ordered

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from service.gateways.kept_file import KeptFileError
 from service.gateways.mqtt.history import PAGE, History
-from service.gateways.mqtt.kept_file import KeptFileError
 from service.gateways.mqtt.kept_topics import TOPICS, KeptTopics
 from service.gateways.mqtt.position import POSITION, WINDOW, Place, Position
 from service.storage import Repository

@@ -21,6 +21,7 @@ from service.configuration.gateways.opcua import OpcUaSettings
 from service.configuration.gateways.settings import GatewaysSettings
 from service.configuration.settings import Settings
 from service.gateways.opcua.certificate import own_certificate
+from service.gateways.supervision import PlantGateways
 from service.recording_store.folder import FolderStore
 from service.storage import Repository
 from service.storage.records import Role
@@ -285,6 +286,23 @@ def test_a_gateway_that_is_killed_is_back_with_the_right_values(
         os.kill(first, signal.SIGKILL)
         tell(repository, FAULT)
         assert eventually(lambda: state() == "fault")
+
+
+def test_a_port_that_is_taken_is_told_and_tried_again(repository: Repository, tmp_path: Path) -> None:
+    chosen = settings_of(tmp_path, anonymous=True, unencrypted=True)
+    assert chosen.gateways.opcua is not None
+    port = chosen.gateways.opcua.port
+    gateways = PlantGateways(chosen)
+    with socket.create_server((LOOPBACK, port)):
+        gateways.start()
+        told = f"{LOOPBACK}:{port}: Address already in use"
+        assert eventually(lambda: gateways.status()[0].problem == told)
+        process = gateways.status()[0].process_id
+    try:
+        assert eventually(lambda: gateways.status()[0].problem is None)
+        assert gateways.status()[0].process_id == process
+    finally:
+        gateways.stop()
 
 
 def test_nothing_goes_in_clear_beyond_loopback() -> None:

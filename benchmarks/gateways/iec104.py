@@ -1,0 +1,75 @@
+"""python -m benchmarks.gateways.iec104: IEC 60870-5-104 with 500 motors, told to a controlling station."""
+
+import argparse
+import time
+from contextlib import closing
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import c104
+
+from benchmarks.gateways.load import measure
+from benchmarks.gateways.plant import changing_plant
+from service.configuration.gateways.iec104 import Iec104Settings
+from service.configuration.gateways.settings import GatewaysSettings
+from service.configuration.settings import Settings
+from service.gateways.iec104.points import address
+from testing.ports import LOOPBACK, free_port
+from testing.service.gateways import running_gateways
+from testing.waiting import wait_until
+
+
+class Controlling:
+    """A connected client of the library, whose points follow the station's."""
+
+    def __init__(self, port: int, motors: int) -> None:
+        self._client = c104.Client()
+        connection = self._client.add_connection(ip=LOOPBACK, port=port, init=c104.Init.ALL)
+        assert connection is not None
+        station = connection.add_station(common_address=1)
+        assert station is not None
+        self._faults = [
+            station.add_point(io_address=address(number, 1), type=c104.Type.M_SP_TB_1)
+            for number in range(motors)
+        ]
+        self._client.start()
+
+    def is_faulty(self, number: int) -> bool:
+        """Return what the station said last of a motor."""
+        point = self._faults[number]
+        assert point is not None
+        return bool(point.value)
+
+    def close(self) -> None:
+        """End the connection."""
+        self._client.stop()
+
+
+def main() -> None:
+    """Print the figures."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--motors", type=int, default=500)
+    parser.add_argument("--changes", type=int, default=60)
+    parser.add_argument("--idle-s", type=float, default=60.0)
+    wanted = parser.parse_args()
+    with TemporaryDirectory(prefix="statorwatch-") as directory:
+        plant = changing_plant(Path(directory), wanted.motors, now_ns=time.time_ns())
+        server = Iec104Settings(port=free_port())
+        settings = Settings(data_directory=Path(directory), gateways=GatewaysSettings(iec104=server))
+        places = {name: place for place, name in enumerate(sorted(plant.motors))}
+        with running_gateways(settings) as running:
+            (status,) = running.status()
+            assert status.process_id is not None
+            with closing(Controlling(server.port, wanted.motors)) as client:
+
+                def wait_for(motor: str, *, is_faulty: bool) -> None:
+                    wait_until(lambda: client.is_faulty(places[motor]) == is_faulty, f"the fault of {motor}")
+
+                load = measure(
+                    status.process_id, plant, wait_for, idle_s=wanted.idle_s, changes=wanted.changes
+                )
+    print(f"{wanted.motors} motors: {load}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,1 @@
+"""An IEC 60870-5-104 server that tells the health of the motors."""

@@ -1,0 +1,153 @@
+"""A controlling station that knows only the standard's octets is told of the motors."""
+
+import os
+import re
+import signal
+import socket
+from collections.abc import Iterator
+from contextlib import closing, suppress
+from pathlib import Path
+
+import pytest
+
+from service.configuration.gateways.iec104 import Iec104Settings
+from service.configuration.gateways.settings import GatewaysSettings
+from service.configuration.settings import Settings
+from service.gateways.iec104.points import BLOCK, FIRST, POINTS, RELAY_ANSWERS
+from service.storage import Repository
+from service.storage.states import LinkState
+from testing.ports import LOOPBACK, free_port
+from testing.service.conditions import FAULT, HEALTHY, tell
+from testing.service.gateways import running_gateways
+from testing.service.plants import NOW_NS
+from testing.waiting import eventually
+from tests.service.gateways.iec104.telegrams import (
+    INTERROGATED,
+    INVALID,
+    NOT_TOPICAL,
+    SPONTANEOUS,
+    Master,
+)
+
+FAN, PUMP = FIRST, FIRST + BLOCK
+PAGE = Path(__file__).parents[4] / "docs" / "integration.md"
+
+
+def settings_of(directory: Path, **table: object) -> Settings:
+    server = Iec104Settings.model_validate({"port": free_port(), **table})
+    return Settings(data_directory=directory, stale_after_days=3650, gateways=GatewaysSettings(iec104=server))
+
+
+def port_of(chosen: Settings) -> int:
+    assert chosen.gateways.iec104 is not None
+    return chosen.gateways.iec104.port
+
+
+@pytest.fixture
+def port(repository: Repository, tmp_path: Path) -> Iterator[int]:
+    chosen = settings_of(tmp_path)
+    with running_gateways(chosen):
+        yield port_of(chosen)
+
+
+def test_everything_is_told_when_asked_with_the_time_of_the_record(
+    repository: Repository, tmp_path: Path
+) -> None:
+    tell(repository, FAULT)
+    chosen = settings_of(tmp_path, common_address=7)
+    with running_gateways(chosen), closing(Master(LOOPBACK, port_of(chosen))) as master:
+        master.interrogate(7)
+    assert sorted(master.told) == [one + offset for one in (FAN, PUMP) for offset in range(len(POINTS) + 1)]
+    watch, fault, level, low, high = (master.told[PUMP + offset] for offset in range(5))
+    assert (watch.value, fault.value, fault.quality, fault.cause) == (1, 1, 0, INTERROGATED)
+    assert (level.value, low.value, high.value) == pytest.approx((1.21, 0.9, 2.25))
+    assert level.time.timestamp() * 10**9 == NOW_NS
+    assert (master.told[PUMP + 8].value, master.told[PUMP + 9].value) == (1, 2)
+    assert master.told[PUMP + 7].quality & INVALID, "the load is not known"
+    assert all(master.told[FAN + offset].quality & INVALID for offset in range(8)), "nothing is known"
+    assert master.told[FAN + RELAY_ANSWERS].quality & INVALID
+
+
+def test_a_change_is_told_by_itself_and_nothing_else(repository: Repository, port: int) -> None:
+    tell(repository, HEALTHY)
+    with closing(Master(LOOPBACK, port)) as master:
+
+        def state() -> int:
+            master.interrogate()
+            return master.told[PUMP].quality
+
+        assert eventually(lambda: state() == 0)
+        master.told.clear()
+        repository.set_link_state("A1_SEL710", LinkState.UP, now_ns=NOW_NS, reason=None)
+        master.next_change()
+    assert {place: (one.value, one.cause) for place, one in master.told.items()} == {
+        PUMP + RELAY_ANSWERS: (1, SPONTANEOUS)
+    }
+
+
+def test_an_old_condition_is_not_topical(repository: Repository, tmp_path: Path) -> None:
+    tell(repository, HEALTHY)
+    chosen = settings_of(tmp_path).model_copy(update={"stale_after_days": 0.01})
+    with running_gateways(chosen), closing(Master(LOOPBACK, port_of(chosen))) as master:
+        master.interrogate()
+    assert master.told[PUMP].quality == NOT_TOPICAL
+
+
+def test_commands_do_nothing_and_say_so(port: int) -> None:
+    with closing(Master(LOOPBACK, port)) as master:
+        assert master.is_command_refused()
+
+
+def test_silent_and_garbling_clients_keep_nobody_out(repository: Repository, tmp_path: Path) -> None:
+    chosen = settings_of(tmp_path, max_connections=20)
+    with running_gateways(chosen):
+        crowd = [socket.create_connection((LOOPBACK, port_of(chosen))) for _ in range(15)]
+        for number, one in enumerate(crowd):
+            with suppress(OSError):
+                one.sendall(b"\x68" + bytes([4 + number]) + os.urandom(number + 4))
+        with closing(Master(LOOPBACK, port_of(chosen))) as master:
+            master.interrogate()
+            assert PUMP in master.told
+        for one in crowd:
+            one.close()
+
+
+def test_a_gateway_that_is_killed_is_back_with_the_right_values(
+    repository: Repository, tmp_path: Path
+) -> None:
+    tell(repository, HEALTHY)
+    chosen = settings_of(tmp_path)
+
+    def fault() -> float | None:
+        try:
+            with closing(Master(LOOPBACK, port_of(chosen))) as master:
+                master.interrogate()
+                return master.told[PUMP + 1].value
+        except OSError:
+            return None
+
+    with running_gateways(chosen) as gateways:
+        assert fault() == 0
+        first = gateways.status()[0].process_id
+        assert first is not None
+        os.kill(first, signal.SIGKILL)
+        tell(repository, FAULT)
+        assert eventually(lambda: fault() == 1)
+
+
+def test_the_page_has_every_point_and_the_map_is_written(port: int, tmp_path: Path) -> None:
+    section = PAGE.read_text(encoding="utf-8").partition("<!-- points: begin -->")[2]
+    rows = re.findall(r"^\| (\d+) \| (M_\w+) \| (.*) \|$", section.partition("<!-- points: end -->")[0], re.M)
+    expected = [(str(offset), point.kind.name, point.meaning) for offset, point in enumerate(POINTS)]
+    assert rows == [*expected, (str(RELAY_ANSWERS), "M_SP_TB_1", "The relay answers")]
+    assert (tmp_path / "iec104-map.csv").read_text(encoding="utf-8").splitlines() == [
+        "motor,first address",
+        f"FAN-A2,{FAN}",
+        f"PUMP-A1,{PUMP}",
+    ]
+
+
+def test_beyond_loopback_somebody_decides_who_may_read() -> None:
+    with pytest.raises(ValueError, match="open_to_all"):
+        Iec104Settings.model_validate({"bind_address": "10.0.0.1"})
+    assert Iec104Settings.model_validate({"bind_address": "10.0.0.1", "open_to_all": True})
