@@ -19,7 +19,7 @@ def worker_processes(number: int) -> Iterator[Executor]:
     Left alone, they would go on with what is queued, or wait for ever. A request to terminate raises
     SystemExit, so that everything else is cleaned up too.
     """
-    signal(SIGTERM, _exit)
+    exit_when_terminated()
     pool = ProcessPoolExecutor(number, mp_context=get_context("spawn"), initializer=_end_with_parent)
     try:
         yield pool
@@ -29,6 +29,11 @@ def worker_processes(number: int) -> Iterator[Executor]:
         pool.shutdown(wait=False, cancel_futures=True)
         raise
     pool.shutdown()
+
+
+def exit_when_terminated() -> None:
+    """Let a request to terminate raise SystemExit, so that processes and folders are cleaned up."""
+    signal(SIGTERM, _exit)
 
 
 def _exit(number: int, _: FrameType | None) -> None:

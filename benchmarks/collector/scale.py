@@ -23,6 +23,7 @@ from pathlib import Path
 
 from lxml import etree
 
+from benchmarks.processes import exit_when_terminated
 from benchmarks.simulator.plant import cpu_s, plant_of, resident_mb
 from core.units import NANOSECONDS_PER_SECOND
 from scl.document import Document
@@ -311,6 +312,7 @@ def main() -> int:
     parser.add_argument("--relays-per-gateway", type=int, help="the setting; its default where left out")
     parser.add_argument("--triggered", type=int, help="so many relays are triggered; all where left out")
     arguments = parser.parse_args()
+    exit_when_terminated()
     seen = Seen()
     lines = measure(
         seen,
