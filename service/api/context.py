@@ -20,13 +20,19 @@ Problem = Callable[[], str | None]
 
 
 class Integration(Protocol):
-    """A gateway to another system of the plant. problem: what does not work in it; None while all does."""
+    """A gateway to another system of the plant.
+
+    restarts: how often it ended since the service started. problem: what does not work; None while all does.
+    """
 
     @property
     def kind(self) -> str: ...
 
     @property
     def process_id(self) -> int | None: ...
+
+    @property
+    def restarts(self) -> int: ...
 
     @property
     def problem(self) -> str | None: ...

@@ -2,6 +2,7 @@
 
 import json
 import sys
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -27,10 +28,15 @@ LONGEST_PROBLEM = 500
 
 @dataclass(frozen=True, slots=True)
 class PlantGatewayStatus:
-    """A gateway to other systems. problem: what does not work in it; None while all does."""
+    """A gateway to other systems.
+
+    restarts: how often it ended since the service started.  problem: what does not work in it; None while
+    all does.
+    """
 
     kind: str
     process_id: int | None
+    restarts: int
     problem: str | None
 
 
@@ -52,6 +58,7 @@ class PlantGateways:
     def __init__(self, settings: Settings, command: tuple[str, ...] = COMMAND) -> None:
         self._lock = Lock()
         self._problems: dict[str, str | None] = {}
+        self._ends: Counter[str] = Counter()
         self._supervised = {
             kind: SupervisedProcess(
                 f"the gateway {kind}",
@@ -83,15 +90,18 @@ class PlantGateways:
     def status(self) -> Sequence[PlantGatewayStatus]:
         """Return how each gateway is."""
         with self._lock:
-            told = dict(self._problems)
+            told, ends = dict(self._problems), dict(self._ends)
         return [
-            PlantGatewayStatus(kind, one.process_id, one.problem() or told.get(kind, STARTING))
+            PlantGatewayStatus(
+                kind, one.process_id, ends.get(kind, 0), one.problem() or told.get(kind, STARTING)
+            )
             for kind, one in self._supervised.items()
         ]
 
     def _forget(self, kind: str, _exit_code: int | None) -> None:
         with self._lock:
             self._problems.pop(kind, None)
+            self._ends[kind] += 1
 
     def _hear(self, kind: str, line: bytes) -> None:
         """Keep what a gateway says of itself."""

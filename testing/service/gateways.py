@@ -7,6 +7,9 @@ from service.configuration.settings import Settings
 from service.gateways.supervision import PlantGateways
 from testing.waiting import wait_until
 
+MOST_RESTARTS = 3
+"""A gateway that has ended so often never works."""
+
 
 @contextmanager
 def started_gateways(settings: Settings) -> Iterator[PlantGateways]:
@@ -23,5 +26,13 @@ def started_gateways(settings: Settings) -> Iterator[PlantGateways]:
 def running_gateways(settings: Settings) -> Iterator[PlantGateways]:
     """Run the gateways of these settings; the block begins when nothing lacks in any of them."""
     with started_gateways(settings) as gateways:
-        wait_until(lambda: all(one.problem is None for one in gateways.status()), "the gateways to work")
+        wait_until(lambda: _work_or_end(gateways), "the gateways to work")
+        ended = [one.kind for one in gateways.status() if one.problem is not None]
+        assert not ended, f"these ended again and again: {', '.join(ended)}"
         yield gateways
+
+
+def _work_or_end(gateways: PlantGateways) -> bool:
+    """Whether all work, or one of them has ended so often that it never will."""
+    found = gateways.status()
+    return all(one.problem is None for one in found) or any(one.restarts >= MOST_RESTARTS for one in found)

@@ -13,10 +13,14 @@ router = APIRouter(tags=["operation"])
 
 
 class Integration(Document):
-    """A gateway to another system, by its kind in the settings. problem: null while all works in it."""
+    """A gateway to another system, by its kind in the settings.
+
+    restarts: how often it ended since the service started. problem: null while all works in it.
+    """
 
     kind: str
     process_id: int | None
+    restarts: int
     problem: str | None
 
 

@@ -44,6 +44,7 @@ def test_a_gateway_that_is_killed_is_back_and_says_again_what_does_not_work(sett
         os.kill(first, signal.SIGKILL)
         assert eventually(lambda: gateways.status()[0].process_id not in (None, first))
         assert eventually(lambda: gateways.status()[0].problem == "no broker at 127.0.0.1:1883")
+        assert gateways.status()[0].restarts == 1
     finally:
         gateways.stop()
     assert gateways.problem() == "the gateway first is not running"
