@@ -45,13 +45,15 @@ def as_grafana_sends_it(query: str) -> str:
 @pytest.fixture
 def seeded(postgresql_url: str, tmp_path: Path) -> str:
     """A plant of which each query has something to tell; the address as psycopg takes it."""
-    repository = Repository(connect(postgresql_url))
+    engine = connect(postgresql_url)
+    repository = Repository(engine)
     repository.sync_plant(two_motor_plant())
     register_runner(repository)
     store = FolderStore(tmp_path / "recordings")
     ExaminedRecordings(repository, store).add(BROKEN_ROTOR, SUPPLY, diagnosis=fault(0.03))
     tell(repository, FAULT)
     repository.settle_alarms(now_ns=NOW_NS)
+    engine.dispose()
     return make_url(postgresql_url).set(drivername="postgresql").render_as_string(hide_password=False)
 
 

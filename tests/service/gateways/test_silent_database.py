@@ -32,9 +32,11 @@ def test_a_database_that_is_away_leaves_nothing_good_and_all_is_good_again_after
         not_installed(f"no PostgreSQL server in {INSTALLED}: apt-get install postgresql")
     server = Iec104Settings(port=free_port())
     with serving_postgresql(folder) as postgresql, postgresql.database() as url:
-        repository = Repository(connect(url))
+        engine = connect(url)
+        repository = Repository(engine)
         repository.sync_plant(two_motor_plant())
         tell(repository, HEALTHY)
+        engine.dispose()
         chosen = Settings(
             data_directory=tmp_path,
             database_url=url,
