@@ -14,7 +14,7 @@ import structlog
 from sqlalchemy.exc import DBAPIError
 
 from service.storage import Repository
-from service.storage.records import LinkNote, RelayFindings, Sample
+from service.storage.records import ClockNote, LinkNote, RelayFindings, ReportPosition, Sample
 from service.timing.database_silence import does_not_answer
 from service.timing.periodic_worker import PeriodicWorker
 
@@ -53,6 +53,8 @@ class BatchWriter:
         self._findings: _Batch[RelayFindings] = _Batch(
             "what was found at relays", lambda findings: repository.note_findings(*findings)
         )
+        self._clocks = _Batch("readings of clocks", repository.note_clocks)
+        self._positions = _Batch("places in the relays' reports", repository.save_report_positions)
         self._worker = PeriodicWorker("the batch writer", self._write, period_s=period_s, once_more=True)
 
     def add_sample(self, sample: Sample) -> None:
@@ -60,12 +62,20 @@ class BatchWriter:
         self._samples.add(sample)
 
     def add_note(self, note: LinkNote) -> None:
-        """Write what went over a link that is up, and stays up."""
+        """Write what went over a link, and the state it has from then on."""
         self._notes.add(note)
 
     def add_findings(self, findings: RelayFindings) -> None:
         """Write what was found at a relay."""
         self._findings.add(findings)
+
+    def add_clock(self, note: ClockNote) -> None:
+        """Write how far a relay's clock is from ours."""
+        self._clocks.add(note)
+
+    def add_position(self, position: ReportPosition) -> None:
+        """Write where to resume a relay's reports."""
+        self._positions.add(position)
 
     def start(self) -> None:
         """Start the thread."""
@@ -81,7 +91,7 @@ class BatchWriter:
 
     def _write(self) -> None:
         with ExitStack() as writes:  # what goes wrong with items of one kind holds up none of the others
-            for batch in (self._notes, self._findings, self._samples):
+            for batch in (self._notes, self._clocks, self._positions, self._findings, self._samples):
                 writes.callback(batch.write)
 
 

@@ -223,6 +223,8 @@ class Gateway:
             on_sample=self._batches.add_sample,
             on_note=self._batches.add_note,
             on_findings=self._batches.add_findings,
+            on_clock=self._batches.add_clock,
+            on_position=self._batches.add_position,
             reported=motor,
         )
         thread = Thread(target=session.run, name=f"relay-{relay}", daemon=True)

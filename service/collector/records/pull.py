@@ -63,6 +63,10 @@ class DailyAllowance:
         self.day = day
         self.used_bytes = used_bytes
 
+    def resume(self, day: int, used_bytes: int) -> None:
+        """Go on from what was counted before."""
+        self.day, self.used_bytes = day, used_bytes
+
     def allows(self, sizes: tuple[int, ...], now_ns: int) -> bool:
         """Return whether files of these sizes fit into what is left of the day."""
         self._begin_day(now_ns)

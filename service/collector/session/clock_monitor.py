@@ -9,7 +9,7 @@ use here, because nobody knows how long a report waited.
 
 import time
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from core.units import NANOSECONDS_PER_SECOND
@@ -24,7 +24,7 @@ from mms import (
 )
 from service.plant import Measurand
 from service.storage import Repository
-from service.storage.records import ClockReading
+from service.storage.records import ClockNote, ClockReading
 from service.storage.states import ClockQuality
 
 FRACTION_BITS = 0x1F
@@ -82,9 +82,16 @@ class _StampRead:
 class ClockMonitor:
     """Measures a relay's clock now and then, from the stamps of its values. Used by its session alone."""
 
-    def __init__(self, relay: str, repository: Repository) -> None:
+    def __init__(
+        self, relay: str, repository: Repository, *, on_clock: Callable[[ClockNote], None] | None = None
+    ) -> None:
+        """Begin without a reading.
+
+        on_clock: takes readings that nothing waits for; None where they are written at once.
+        """
         self._relay = relay
         self._repository = repository
+        self._on_clock = on_clock or (lambda note: repository.note_clock(note.ied, note.reading))
         self._stamps: deque[str] = deque()
         self._before: _StampRead | None = None
         self._due_s = 0.0
@@ -103,14 +110,14 @@ class ClockMonitor:
         return stamp_of(client, f"{control}.t", FunctionalConstraint.ST)
 
     def note_change(self, stamp: Timestamp, *, asked_ns: int, answered_ns: int) -> None:
-        """Note the stamp of a change between two times of this host's clock. Raises SQLAlchemyError."""
-        self.note(clock_reading(stamp, asked_ns=asked_ns, answered_ns=answered_ns))
+        """Note the stamp of a change between two times of this host's clock. Raises SQLAlchemyError.
 
-    def note(self, clock: ClockReading) -> None:
-        """Note a reading, however it was made. Raises SQLAlchemyError."""
-        self._repository.note_clock(self._relay, clock)
-        self._due_s = time.monotonic() + PERIOD_S
-        self._before = None
+        It is written at once: the record that the change brings about is stored with it.
+        """
+        self._repository.note_clock(
+            self._relay, clock_reading(stamp, asked_ns=asked_ns, answered_ns=answered_ns)
+        )
+        self._has_read()
 
     def measure_if_due(self, client: Client) -> None:
         """Measure the clock if it is time to, and the value has changed since the last call.
@@ -124,7 +131,13 @@ class ClockMonitor:
         if now is None:
             self._stamps.rotate(-1)  # another value may have one
         elif before is not None and before.stamp != now.stamp:
-            self.note(_between(*self._around_next_change(client, before, now)))
+            reading = _between(*self._around_next_change(client, before, now))
+            self._on_clock(ClockNote(self._relay, reading))
+            self._has_read()
+
+    def _has_read(self) -> None:
+        self._due_s = time.monotonic() + PERIOD_S
+        self._before = None
 
     def _around_next_change(
         self, client: Client, before: _StampRead, now: _StampRead

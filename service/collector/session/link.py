@@ -33,17 +33,16 @@ class Link:
     ) -> None:
         """Begin with a link of which nothing is known yet.
 
-        on_note: takes what goes over a link that stays up; None where it is written at once.
+        on_note: takes what goes over the link and how it is; None where that is written at once.
         reminder_s: a link that stays down for the same reason is logged this often.
         """
         self._relay = relay
-        self._repository = repository
         self._allowance = allowance
         self._unwritten = LinkTraffic()
         self._on_note = on_note or (lambda note: repository.note_links((note,)))
         self._reminder_s = reminder_s
         self._written_s: float | None = None
-        self._answered_ns = 0
+        self._told_ns = 0
         self._remark: str | None = None
         self._failure_logged: tuple[str, float] | None = None
 
@@ -73,11 +72,11 @@ class Link:
 
     def answered(self, round_trip_s: float | None, remark: str | None = None) -> None:
         """Note that the relay answered. remark: what it cannot give at present. Raises SQLAlchemyError."""
-        now_s, self._answered_ns = time.monotonic(), time.time_ns()
+        now_s, self._told_ns = time.monotonic(), time.time_ns()
         if self._written_s is None or remark != self._remark:
-            self._write_state(LinkState.UP, remark, round_trip_s)
+            self._note(round_trip_s, LinkState.UP, remark)
         elif now_s - self._written_s >= NOTE_PERIOD_S:
-            self._write_figures(round_trip_s)
+            self._note(round_trip_s)
         else:
             return
         self._written_s, self._remark = now_s, remark
@@ -87,39 +86,33 @@ class Link:
         if self._written_s is None:
             return  # the relay has not answered yet
         try:
-            self._write_figures(None)
+            self._note(None)
         except SQLAlchemyError:
             log.exception("figures of a link are lost", relay=self._relay)
 
     def failed(self, reason: str) -> None:
         """Note that the link is down, and why."""
         self._log_failure(reason)
+        self._told_ns = time.time_ns()
         try:
-            self._write_state(LinkState.DOWN, reason, None)
+            self._note(None, LinkState.DOWN, reason)
         except SQLAlchemyError:
             log.exception("database does not answer, trying again")
 
-    def _write_state(self, state: LinkState, reason: str | None, round_trip_s: float | None) -> None:
-        self._repository.set_link_state(
-            self._relay,
-            state,
-            reason,
-            now_ns=time.time_ns(),
-            traffic=self._unwritten,
-            round_trip_s=round_trip_s,
-            day_bytes=(self._allowance.day, self._allowance.used_bytes),
-        )
-        self._unwritten = LinkTraffic()
-
-    def _write_figures(self, round_trip_s: float | None) -> None:
+    def _note(
+        self, round_trip_s: float | None, state: LinkState | None = None, reason: str | None = None
+    ) -> None:
+        """Write the figures, and the state where there is a new one. Raises SQLAlchemyError."""
         self._on_note(
             LinkNote(
                 self._relay,
-                self._answered_ns,
+                self._told_ns,
                 self._unwritten,
                 round_trip_s,
                 day=self._allowance.day,
                 day_bytes=self._allowance.used_bytes,
+                state=state,
+                reason=reason,
             )
         )
         self._unwritten = LinkTraffic()

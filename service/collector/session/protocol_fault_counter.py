@@ -24,7 +24,7 @@ class ProtocolFaultCounter:
         policy: SessionPolicy = SESSION_POLICY,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        """Read from the database whether the relay is on probation. Raises SQLAlchemyError.
+        """Begin with a relay that is trusted; `recall` says whether it is.
 
         clock: tells a time that only goes forward [s].
         """
@@ -35,8 +35,12 @@ class ProtocolFaultCounter:
         self._clock = clock
         self._faults = 0
         self._visited_s = clock()
-        latest = repository.quarantine(relay)
-        self._probation_s = None if latest is None else quarantine.probation_after_s(latest)
+        self._probation_s: float | None = None
+
+    def recall(self) -> None:
+        """Read from the database whether the relay is on probation. Raises SQLAlchemyError."""
+        latest = self._repository.quarantine(self._relay)
+        self._probation_s = None if latest is None else self._quarantine.probation_after_s(latest)
 
     def visit_begins(self) -> None:
         """Note that a visit begins."""

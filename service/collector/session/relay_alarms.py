@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Collection
+from functools import cached_property
 
 import structlog
 
@@ -17,23 +18,27 @@ AND_MORE = "(and more)"
 class RelayAlarms:
     """The standing alarms of one relay, raised and cleared by that relay's session alone.
 
-    No other process changes them, so they are read from the database once.
+    No other process changes them, so they are read from the database once, when they are first needed.
     """
 
     def __init__(self, relay: str, repository: Repository, *, most: int = SESSION_POLICY.most_alarms) -> None:
-        """Read the standing alarms from the database. Raises SQLAlchemyError.
+        """Read nothing yet.
 
         most: so many alarms of a kind stand; one more says that there are others.
         """
         self._relay = relay
         self._repository = repository
         self._most = most
-        self._standing = {
-            (alarm.kind, alarm.subject): alarm.id for alarm in repository.standing_alarms(relay)
+
+    @cached_property
+    def _standing(self) -> dict[tuple[AlarmKind, str], str]:
+        """Return the ids of the standing alarms. Raises SQLAlchemyError."""
+        return {
+            (alarm.kind, alarm.subject): alarm.id for alarm in self._repository.standing_alarms(self._relay)
         }
 
     def standing(self, kind: AlarmKind) -> frozenset[str]:
-        """Return the subjects of the standing alarms of this kind."""
+        """Return the subjects of the standing alarms of this kind. Raises SQLAlchemyError."""
         return frozenset(subject for of_kind, subject in self._standing if of_kind is kind)
 
     def raise_alarm(self, kind: AlarmKind, subject: str, reason: str) -> None:

@@ -35,8 +35,9 @@ from service.configuration.settings import Settings
 from service.plant import Relay
 from service.recording_store.store import RecordingStore
 from service.storage import LeaseLostError, Repository
-from service.storage.records import LinkNote, RelayFindings, Sample
+from service.storage.records import ClockNote, LinkNote, RelayFindings, ReportPosition, Sample
 from service.timing.backoff import RestartDelay
+from service.timing.database_silence import database_trouble
 
 log = structlog.get_logger(__name__)
 
@@ -63,31 +64,32 @@ class RelaySession:
         on_sample: Callable[[Sample], None] | None = None,
         on_note: Callable[[LinkNote], None] | None = None,
         on_findings: Callable[[RelayFindings], None] | None = None,
+        on_clock: Callable[[ClockNote], None] | None = None,
+        on_position: Callable[[ReportPosition], None] | None = None,
         reported: Motor | None = None,
         policy: SessionPolicy = SESSION_POLICY,
     ) -> None:
-        """Put together what one relay needs; `run` then connects. Raises SQLAlchemyError.
+        """Put together what one relay needs; `run` then reads what is known of it, and connects.
 
-        gateway: who holds the relay's lease; None where relays are not shared.
+        gateway: who holds the relay's lease, and wakes this session while somebody waits for a recording;
+        None where relays are not shared, and each round looks whether somebody does.
         visit_marks: where a visit is marked, for whoever finds the process dead; None where nobody looks.
         on_sample: takes what the relay measures; None where nobody wants it.
-        on_note: takes what goes over a link that stays up; None where it is written at once.
-        on_findings: takes what is found at the relay; None where it is written at once.
+        on_note, on_findings, on_clock, on_position: take what goes over the link and how it is, what is found
+        at the relay, readings of its clock, and where to resume its reports; None where that is written at
+        once.
         reported: the motor that the relay's text reports tell of; None where nobody wants them.
         """
         self._relay = relay
         self._repository = repository
         self._settings = settings
         self._policy = policy
-        figures = repository.link_figures(relay.name)
-        allowance = DailyAllowance(
-            settings.max_relay_bytes_per_day, day=figures.day, used_bytes=figures.day_bytes
-        )
+        allowance = self._allowance = DailyAllowance(settings.max_relay_bytes_per_day)
         self._link = Link(relay.name, repository, allowance, on_note=on_note, reminder_s=policy.reminder_s)
         alarms = RelayAlarms(relay.name, repository, most=policy.most_alarms)
         self._discovery = Discovery(relay, alarms, on_findings or repository.note_findings)
         self._subscription = ReportSubscription(
-            relay.name, repository, self._link, retry_s=policy.report_retry_s
+            relay.name, repository, self._link, retry_s=policy.report_retry_s, on_position=on_position
         )
         self._folders = EventFolders(
             relay.name,
@@ -107,8 +109,9 @@ class RelaySession:
             on_bytes=self._link.received,
             policy=policy.records,
         )
-        self._clock = ClockMonitor(relay.name, repository)
+        self._clock = ClockMonitor(relay.name, repository, on_clock=on_clock)
         self._stopping = Event()
+        self._is_woken = gateway is not None
         self._triggers = TriggerQueue(
             relay,
             repository,
@@ -136,6 +139,7 @@ class RelaySession:
         self._protocol_faults = ProtocolFaultCounter(
             relay.name, repository, QuarantinePolicy.starting_with(settings.quarantine_s), policy=policy
         )
+        self._has_recalled = False
         self._visit_marks = visit_marks
         self._mark: VisitMark | None = None
         self._client: Client | None = None
@@ -172,6 +176,12 @@ class RelaySession:
 
     def _visit_once(self) -> bool:
         """Make one visit, and note why it ended. Returns whether the relay is to be visited again."""
+        try:
+            if not self._has_recalled:
+                self._recall()
+        except SQLAlchemyError as error:
+            log.warning("not visited yet", relay=self._relay.name, reason=database_trouble(error))
+            return True
         try:
             self._visit()
         except (MmsError, CredentialFileError, AccessError) as error:
@@ -225,6 +235,13 @@ class RelaySession:
                 log.info("connected", relay=self._relay.name, host=self._relay.host, port=self._relay.port)
                 self._work_until_stopped(client)
 
+    def _recall(self) -> None:
+        """Read what was known of the relay before. Raises SQLAlchemyError."""
+        figures = self._repository.link_figures(self._relay.name)
+        self._allowance.resume(figures.day, figures.day_bytes)
+        self._protocol_faults.recall()
+        self._has_recalled = True
+
     def _connect(self) -> Client:
         """Return a client that is connected. Raises MmsError, CredentialFileError, AccessError."""
         own = credentials(self._settings.relays, self._relay.name)
@@ -240,8 +257,9 @@ class RelaySession:
 
     def _work_until_stopped(self, client: Client) -> None:
         while not self._stopping.is_set():
+            asked = self._requested.is_set()
             self._requested.clear()
-            waiting = self._work(client)
+            waiting = self._work(client, asked=asked)
             self._link.answered(client.round_trip_s, "; ".join(self._remarks()) or None)
             self._protocol_faults.round_succeeded()
             self._wait(client, self._hurried_period_s() if waiting else self._settings.poll_period_s)
@@ -261,6 +279,7 @@ class RelaySession:
         if self._metering is not None:
             self._metering.begin(acquisition.measurands)
         self._subscription.begin(client, ReportQueue(self._wake_up), acquisition)
+        self._requested.set()  # what was asked of an earlier session may be open
         self._link.connected()
 
     def _remarks(self) -> list[str]:
@@ -299,13 +318,17 @@ class RelaySession:
             self._record_expected_until_s = time.monotonic() + self._settings.record_timeout_s
         return announced
 
-    def _work(self, client: Client) -> bool:
-        """Do one round: reports, directory, requests. Returns whether a record is on its way."""
+    def _work(self, client: Client, *, asked: bool) -> bool:
+        """Do one round: reports, directory, requests. Returns whether a record is on its way.
+
+        asked: somebody may have requested a recording.
+        """
         until_trigger_s = self._triggers.due_in_s()
         if until_trigger_s == math.inf:
             self._subscription.retry_if_due(client)
         self._handle_reports()
-        self._triggers.recall()
+        if asked or not self._is_woken or self._triggers.are_open:
+            self._triggers.recall()
         if until_trigger_s < LISTING_PAUSE * self._directory.listing_s:
             return True
         expected = time.monotonic() < self._record_expected_until_s

@@ -119,6 +119,11 @@ class TriggerQueue:
         time.sleep(HOLD_S)
         self._end_pulse(client, series.control)
 
+    @property
+    def are_open(self) -> bool:
+        """Return whether a request was open at the latest look."""
+        return self._outstanding is not None or self._next is not None
+
     def recall(self) -> None:
         """Look up which request, if any, waits for a record of this relay, and which one is next."""
         self._recalled_s = time.monotonic()

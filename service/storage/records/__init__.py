@@ -73,6 +73,7 @@ from service.storage.records.recordings import (
 )
 from service.storage.records.relay_reports import MeteredHours, RelayEvent
 from service.storage.records.relays import (
+    ClockNote,
     ClockReading,
     GatewayEntry,
     LinkChange,
@@ -81,6 +82,7 @@ from service.storage.records.relays import (
     LinkTraffic,
     Quarantine,
     RelayFindings,
+    ReportPosition,
 )
 from service.storage.records.rotor_and_supply import (
     RecordsBeyond,
@@ -119,6 +121,7 @@ __all__ = [
     "CallsOfDay",
     "Checkpoint",
     "ClaimedJob",
+    "ClockNote",
     "ClockReading",
     "ConditionChange",
     "ConditionDay",
@@ -176,6 +179,7 @@ __all__ = [
     "RelayFindings",
     "RemoteRecord",
     "ReportOutcome",
+    "ReportPosition",
     "ReportedStart",
     "Role",
     "RotorEntry",

@@ -81,9 +81,10 @@ class LinkTraffic:
 
 @dataclass(frozen=True, slots=True)
 class LinkNote:
-    """A relay answered at `now_ns`, and what went over its link since the last note.
+    """What went over a relay's link since the last note, until `now_ns`.
 
     day_bytes: counted against the limit of the UTC day `day` (days since 1970), until now.
+    state: what the link is from now on, and the reason; None where it stays up, and the relay answered.
     """
 
     ied: str
@@ -92,6 +93,25 @@ class LinkNote:
     round_trip_s: float | None
     day: int
     day_bytes: int
+    state: LinkState | None = None
+    reason: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ClockNote:
+    """A reading of a relay's clock."""
+
+    ied: str
+    reading: ClockReading
+
+
+@dataclass(frozen=True, slots=True)
+class ReportPosition:
+    """The EntryID of the last report of a block whose records are stored."""
+
+    ied: str
+    entry_id: bytes
+    report_control: str | None
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,18 +1,46 @@
 """Sites, relays and motors."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
-from sqlalchemy import delete, select, update
+from sqlalchemy import bindparam, delete, func, select, update
 
 from service.plant import Plant, PlantMotor, Schedule
 from service.storage.engine import one_at_a_time
 from service.storage.models import ConditionRow, IedRow, MotorRow, SiteRow, UnobservedRecordingRow
-from service.storage.records import SERVICE, ClockReading, Cursor, IedEntry, MotorEntry, Page, SiteEntry
+from service.storage.records import (
+    SERVICE,
+    ClockNote,
+    ClockReading,
+    Cursor,
+    IedEntry,
+    MotorEntry,
+    Page,
+    ReportPosition,
+    SiteEntry,
+)
 from service.storage.repository.audit.plant_changes import note_plant_changes, plant_in_service
 from service.storage.repository.conditions.conditions import new_condition
 from service.storage.repository.conditions.fold_marks import EARLIEST_NS, mark
 from service.storage.repository.sessions import Sessions, columns_of, found, page_of, record_of
 from service.storage.states import LinkState
+
+_CLOCKS = (
+    update(IedRow)
+    .where(IedRow.name == bindparam("of"))
+    # a reading that waited replaces none that was made since
+    .where(func.coalesce(IedRow.clock_measured_ns, 0) <= bindparam("measured_ns"))
+    .values(
+        clock_offset_ns=bindparam("offset_ns"),
+        clock_uncertainty_ns=bindparam("uncertainty_ns"),
+        clock_quality=bindparam("quality"),
+        clock_measured_ns=bindparam("measured_ns"),
+    )
+)
+_POSITIONS = (
+    update(IedRow)
+    .where(IedRow.name == bindparam("of"))
+    .values(entry_id=bindparam("new_entry_id"), entry_report_control=bindparam("new_report_control"))
+)
 
 
 class PlantRows(Sessions):
@@ -77,6 +105,25 @@ class PlantRows(Sessions):
             row.clock_offset_ns, row.clock_uncertainty_ns = reading.offset_ns, reading.uncertainty_ns
             row.clock_quality, row.clock_measured_ns = reading.quality, reading.measured_ns
 
+    def note_clocks(self, notes: Sequence[ClockNote]) -> None:
+        """Note readings of relays' clocks. An unknown relay is passed over."""
+        if not notes:
+            return
+        with self._write() as session:
+            session.connection().execute(
+                _CLOCKS,
+                [
+                    {
+                        "of": note.ied,
+                        "offset_ns": note.reading.offset_ns,
+                        "uncertainty_ns": note.reading.uncertainty_ns,
+                        "quality": note.reading.quality,
+                        "measured_ns": note.reading.measured_ns,
+                    }
+                    for note in notes
+                ],
+            )
+
     def entry_id(self, relay: str, report_control: str | None = None) -> bytes | None:
         """Return the EntryID of the last buffered report whose records are stored; None for another block's.
 
@@ -92,6 +139,23 @@ class PlantRows(Sessions):
         with self._write() as session:
             row = found(session, IedRow, relay, "relay")
             row.entry_id, row.entry_report_control = entry_id, report_control
+
+    def save_report_positions(self, positions: Sequence[ReportPosition]) -> None:
+        """Save where to resume the buffered reports of blocks. An unknown relay is passed over."""
+        if not positions:
+            return
+        with self._write() as session:
+            session.connection().execute(
+                _POSITIONS,
+                [
+                    {
+                        "of": each.ied,
+                        "new_entry_id": each.entry_id,
+                        "new_report_control": each.report_control,
+                    }
+                    for each in positions
+                ],
+            )
 
     def sites(self, *, limit: int, after: Cursor | None = None) -> Page[SiteEntry]:
         with self._read() as session:

@@ -57,18 +57,27 @@ class LinkRows(Sessions):
         """
         with self._write() as session:
             row = found(session, IedRow, relay, "relay", lock=True)
-            change_link(session, row, state, reason, now_ns)
-            if state is LinkState.UP:
-                row.last_success_ns = now_ns
+            _set_state(session, row, state, reason, now_ns)
             if traffic is not None:
                 _add(session, relay, traffic, round_trip_s, day_bytes)
 
     def note_links(self, notes: Sequence[LinkNote]) -> None:
-        """Add to the figures of links that are up and stay so. An unknown relay is passed over."""
+        """Add to the figures of links, and set the states that notes tell, in their order.
+
+        A note of a link that stays up passes over an unknown relay. One that tells a state changes none that
+        was set since: by a quarantine, or by whoever found the gateway dead. Raises NotFoundError.
+        """
         if not notes:
             return
         with self._write() as session:
-            session.connection().execute(_ANSWERED, [{"of": note.ied, "at": note.now_ns} for note in notes])
+            for note in notes:
+                if note.state is not None:
+                    _note_state(session, note, note.state)
+            stay_up = [note for note in notes if note.state is None]
+            if not stay_up:
+                return
+            session.flush()
+            session.connection().execute(_ANSWERED, [{"of": note.ied, "at": note.now_ns} for note in stay_up])
             session.connection().execute(
                 _FIGURES,
                 [
@@ -79,7 +88,7 @@ class LinkRows(Sessions):
                         "new_day_bytes": note.day_bytes,
                         **{f"more_{name}": value for name, value in asdict(note.traffic).items()},
                     }
-                    for note in notes
+                    for note in stay_up
                 ],
             )
 
@@ -118,6 +127,19 @@ class LinkRows(Sessions):
         )
         with self._read() as session:
             return tuple(LinkFigures(*row) for row in session.execute(query))
+
+
+def _note_state(session: Session, note: LinkNote, state: LinkState) -> None:
+    row = found(session, IedRow, note.ied, "relay", lock=True)
+    if row.link_changed_ns is None or row.link_changed_ns <= note.now_ns:
+        _set_state(session, row, state, note.reason, note.now_ns)
+    _add(session, note.ied, note.traffic, note.round_trip_s, (note.day, note.day_bytes))
+
+
+def _set_state(session: Session, row: IedRow, state: LinkState, reason: str | None, now_ns: int) -> None:
+    change_link(session, row, state, reason, now_ns)
+    if state is LinkState.UP:
+        row.last_success_ns = now_ns
 
 
 def change_link(session: Session, row: IedRow, state: LinkState, reason: str | None, now_ns: int) -> None:

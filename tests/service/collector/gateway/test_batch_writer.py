@@ -11,8 +11,16 @@ from structlog.testing import capture_logs
 from service.collector.gateway import batch_writer
 from service.collector.gateway.batch_writer import BatchWriter
 from service.storage import Repository, connect
-from service.storage.records import LinkNote, LinkTraffic, RelayFindings, Sample
-from service.storage.states import LinkState
+from service.storage.records import (
+    ClockNote,
+    ClockReading,
+    LinkNote,
+    LinkTraffic,
+    RelayFindings,
+    ReportPosition,
+    Sample,
+)
+from service.storage.states import ClockQuality, LinkState
 from testing.service.plants import NOW_NS, SECOND_NS, two_motor_plant
 from testing.waiting import eventually
 from tests.service.fixtures import database_url, engine
@@ -69,6 +77,57 @@ def test_a_note_that_waited_gives_no_bytes_of_the_day_back(repository: Repositor
     assert repository.link_figures(RELAY).day_bytes == 600
     repository.note_links([replace(note(1), day=8)])
     assert (repository.link_figures(RELAY).day, repository.link_figures(RELAY).day_bytes) == (8, 100)
+
+
+def state_note(second: int, state: LinkState, reason: str | None = None) -> LinkNote:
+    return LinkNote(
+        RELAY,
+        NOW_NS + second * SECOND_NS,
+        LinkTraffic(connections=1),
+        None,
+        day=7,
+        day_bytes=100,
+        state=state,
+        reason=reason,
+    )
+
+
+def test_states_of_a_link_are_noted_in_their_order(repository: Repository) -> None:
+    repository.note_links(
+        [state_note(1, LinkState.DOWN, "cut"), state_note(2, LinkState.UP), note(3)],
+    )
+    ied = repository.relay(RELAY)
+    assert (ied.link_state, ied.link_reason) == (LinkState.UP, None)
+    assert (ied.link_changed_ns, ied.last_success_ns) == (NOW_NS + 2 * SECOND_NS, NOW_NS + 3 * SECOND_NS)
+    repository.note_links([state_note(4, LinkState.DOWN, "cut")])
+    assert repository.relay(RELAY).link_reason == "cut"
+    assert repository.link_figures(RELAY).connections == 4
+    changes = repository.link_changes(RELAY, limit=10).items
+    assert [change.reason for change in changes] == ["cut", None, "cut", None]
+
+
+def test_a_state_that_waited_changes_none_that_was_set_since(repository: Repository) -> None:
+    """The batch of a gateway that hung ends a second after its relays were set aside by another."""
+    repository.set_link_state(RELAY, LinkState.QUARANTINED, "it crashes us", now_ns=NOW_NS + 5 * SECOND_NS)
+    repository.note_links([state_note(4, LinkState.DOWN, "cut")])
+    ied = repository.relay(RELAY)
+    assert (ied.link_state, ied.link_reason) == (LinkState.QUARANTINED, "it crashes us")
+    repository.note_links([state_note(6, LinkState.UP)])
+    assert repository.relay(RELAY).link_state is LinkState.UP
+
+
+def test_the_latest_clock_and_place_in_the_reports_stay(repository: Repository) -> None:
+    batches = BatchWriter(repository, period_s=0.05)
+    for second, offset_ns in ((3, 30), (2, 20)):
+        reading = ClockReading(offset_ns, 1, ClockQuality.SYNCHRONISED, NOW_NS + second * SECOND_NS)
+        batches.add_clock(ClockNote(RELAY, reading))
+    for entry_id in (b"12345678", b"23456789"):
+        batches.add_position(ReportPosition(RELAY, entry_id, "LD/LLN0.BR.A01"))
+    batches.start()
+    batches.stop(10)
+    assert repository.relay(RELAY).clock_offset_ns == 30
+    assert repository.entry_id(RELAY, "LD/LLN0.BR.A01") == b"23456789"
+    assert repository.entry_id(RELAY, "LD/LLN0.BR.B01") is None
 
 
 def test_a_locked_database_costs_nothing_and_doubles_nothing(

@@ -25,6 +25,7 @@ POLICY = QuarantinePolicy.starting_with(PAUSE_S)
 
 def test_a_relay_that_breaks_the_protocol_again_and_again_is_set_aside(repository: Repository) -> None:
     counter = ProtocolFaultCounter(A, repository, POLICY)
+    counter.recall()
     told = [counter.count_fault("nonsense") for _ in range(SESSION_POLICY.faults_in_a_row)]
     assert told == [False] * (SESSION_POLICY.faults_in_a_row - 1) + [True]
     assert "broke the protocol 5 times in a row, at last: nonsense" in (repository.relay(A).link_reason or "")
@@ -44,6 +45,7 @@ def test_a_relay_that_answers_with_nonsense_is_set_aside_with_its_reason(bench: 
 def test_good_visits_between_count(repository: Repository) -> None:
     now_s = 0.0
     counter = ProtocolFaultCounter(A, repository, POLICY, clock=lambda: now_s)
+    counter.recall()
     for _ in range(3 * SESSION_POLICY.faults_in_a_row):
         counter.visit_begins()
         now_s += 11.0
@@ -55,6 +57,7 @@ def test_a_relay_that_works_as_long_as_it_was_set_aside_is_trusted(repository: R
     repository.set_aside(A, "why", backoff=Backoff(PAUSE_S, 86_400.0), now_ns=NOW_NS)
     now_s = 0.0
     counter = ProtocolFaultCounter(A, repository, POLICY, clock=lambda: now_s)
+    counter.recall()
     counter.visit_begins()
     now_s += PAUSE_S - 1
     counter.round_succeeded()
