@@ -81,10 +81,10 @@ def began(service: ServiceClient, scenario: Path) -> datetime | None:
     the plant's time is the real one, or no record tells. Raises ServiceError.
     """
     clock = _clock(scenario)
-    for motor in service.items("/motors"):
+    for motor in service.api.iter_motors():
         points = service.get(f"/motors/{segment(str(motor['name']))}/trend", limit="1")["items"]
         if isinstance(points, list) and points:
-            first = service.get(f"/recordings/{segment(str(points[0]['recording_id']))}")
+            first = service.api.get_recording(str(points[0]["recording_id"]))
             recorded, announced = _time(first, "recorded_time"), _time(first, "announced_time")
             if clock is None or announced - recorded <= BELATED:
                 return None

@@ -101,7 +101,7 @@ class _AtService:
         self._service = service
 
     def users(self) -> list[Document]:
-        return list(self._service.items("/users"))
+        return list(self._service.api.iter_users())
 
     def add_user(
         self, name: str, roles: Collection[Role], full_name: str | None, password: str | None
@@ -143,7 +143,7 @@ class _AtService:
         self._service.send("DELETE", f"{path}/{segment(token_id)}")
 
     def _manages(self) -> bool:
-        permissions = self._service.get("/account").get("permissions")
+        permissions = self._service.api.get_account().get("permissions")
         return isinstance(permissions, list) and "users" in permissions
 
 

@@ -47,7 +47,7 @@ def log_out(url: str, *, as_json: bool) -> None:
 def show_account(url: str, *, as_json: bool) -> None:
     """Print who asks, and what they may do. Raises CommandError."""
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        account = service.get("/account")
+        account = service.api.get_account()
     if as_json:
         print_document(account)
         return

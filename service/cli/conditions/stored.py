@@ -2,6 +2,7 @@
 
 import getpass
 from itertools import islice
+from typing import cast
 
 from rich.box import SIMPLE_HEAD
 from rich.text import Text
@@ -22,6 +23,7 @@ from service.client.conditions import condition_lines, state_text
 from service.client.rest_client import Document, ServiceClient, ServiceError, segment
 from service.client.tables import FittedTable
 from service.client.verdicts import level, to_the_second
+from statorwatch_client import models
 
 MOST_CHANGES = 1000
 """So many changes are shown, the latest first."""
@@ -48,9 +50,11 @@ def add_note(
 ) -> None:
     """Tell something of a motor. Raises CommandError."""
     _require_words(text, "TEXT")
-    note = {"kind": kind, "text": text, "by": by or _login()}
+    note: models.NoteRequest = {"kind": cast("models.EventKind", kind), "text": text, "by": by or _login()}
+    if time is not None:
+        note["time"] = time
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        kept = service.add_note(motor, note if time is None else {**note, "time": time})
+        kept = service.add_note(motor, note)
         waits = _waits_for_a_record(service, kept)
     _print_kept(kept, waits=waits, as_json=as_json)
 
@@ -86,9 +90,11 @@ def restart_reference(
 ) -> None:
     """Have a motor's reference learnt anew. Raises CommandError."""
     _require_words(reason, "--reason")
-    restart = {"reason": reason, "by": by or _login()}
+    restart: models.RestartRequest = {"reason": reason, "by": by or _login()}
+    if time is not None:
+        restart["time"] = time
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        kept = service.restart_reference(motor, restart if time is None else {**restart, "time": time})
+        kept = service.restart_reference(motor, restart)
         waits = _waits_for_a_record(service, kept)
     _print_kept(kept, waits=waits, as_json=as_json)
 
@@ -106,7 +112,7 @@ def withdraw_note(url: str, motor: str, note_id: str, reason: str, *, by: str | 
 
 
 def _notes(service: ServiceClient, motor: str) -> "islice[Document]":
-    return islice(service.items(f"/motors/{segment(motor)}/notes", limit="1000"), MOST_CHANGES)
+    return islice(service.api.iter_notes(motor, limit=1000), MOST_CHANGES)
 
 
 def _history_table(changes: list[Document], notes: dict[object, Document]) -> FittedTable:

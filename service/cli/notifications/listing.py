@@ -42,7 +42,7 @@ def list_notifications(
 def list_channels(url: str, *, as_json: bool) -> None:
     """Print the channels of the settings, and what waits for them. Raises CommandError."""
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        found = list(service.items("/notification-channels"))
+        found = list(service.api.list_channels()["items"])
     if as_json:
         print_document({"channels": found})
         return
@@ -66,7 +66,7 @@ def retry_notifications(url: str, ids: Sequence[str], *, every: bool, as_json: b
         )
     with failing_clearly(ServiceError), ServiceClient(url) as service:
         if every:
-            ids = [str(one["id"]) for one in service.items("/notifications", state="dead", limit="1000")]
+            ids = [str(one["id"]) for one in service.api.iter_notifications(state="dead", limit=1000)]
         retried = [service.retry_notification(one) for one in ids]
     if as_json:
         print_document({"notifications": retried})

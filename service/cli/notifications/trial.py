@@ -19,7 +19,7 @@ def send_tests(url: str, channels: Sequence[str], *, wait_s: float, as_json: boo
     Returns the exit code: 1 where a receiver did not take it within the time. Raises CommandError.
     """
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        names = list(channels) or [str(one["name"]) for one in service.items("/notification-channels")]
+        names = list(channels) or [str(one["name"]) for one in service.api.list_channels()["items"]]
         if not names:
             raise CommandError("the settings have no [notifications.channels]: nobody is told")
         tests: list[Document] = []
