@@ -1,8 +1,9 @@
-"""A motor from Python: its trend as rows, and a recording now with its verdict.
+"""A motor from Python: its trend, and with --record a recording now and its verdict.
 
-    python examples/follow_a_motor.py http://127.0.0.1:8710 PUMP-A1 [statorwatch.token]
+    python examples/follow_a_motor.py http://127.0.0.1:8710 PUMP-A1 statorwatch.token [--record]
 
-It needs the package statorwatch-client (or statorwatch, which brings it along) and nothing else.
+It needs the package statorwatch-client (statorwatch brings it along) and nothing else. Without access
+control any file will do for the token.
 """
 
 import sys
@@ -12,26 +13,35 @@ from pathlib import Path
 from statorwatch_client import Client
 
 LONGEST_S = 120.0
-ENDED = ("diagnosed", "failed", "skipped")
 
 
-def main(url: str, motor: str, token_file: str | None = None) -> int:
-    token = None if token_file is None else Path(token_file).read_text(encoding="utf-8").strip()
-    with Client(url, token=token) as plant:
-        for point in plant.iter_trend(motor, limit=1000):
-            print(point["time"], point["value"], point["verdict"], sep="\t")
-        request = plant.request_event_report(motor)
-        until_s = time.monotonic() + LONGEST_S
-        while request["state"] not in ENDED and time.monotonic() < until_s:
-            time.sleep(0.5)
-            request = plant.get_event_report(request["id"])
-        if request["state"] != "diagnosed" or request["recording_id"] is None:
-            print(f"{motor}: {request['state']}: {request['reason']}")
-            return 1
-        diagnosis = plant.get_recording(request["recording_id"])["diagnosis"]
-        print(f"{motor}: {'no diagnosis' if diagnosis is None else diagnosis['verdict']}")
-    return 0
+def print_trend(plant: Client, motor: str) -> None:
+    for point in plant.iter_trend(motor, limit=1000):
+        print(point["time"], point["value"], point["verdict"], sep="\t")
+
+
+def record(plant: Client, motor: str) -> str:
+    """Have a recording made, and return its verdict, or why there is none."""
+    request = plant.request_event_report(motor)
+    until_s = time.monotonic() + LONGEST_S
+    while request["state"] not in ("diagnosed", "failed", "skipped"):
+        if time.monotonic() > until_s:
+            return f"no verdict within {LONGEST_S:g} s, so far {request['state']}"
+        time.sleep(0.5)
+        request = plant.get_event_report(request["id"])
+    if request["recording_id"] is None:
+        return f"{request['state']}: {request['reason']}"
+    diagnosis = plant.get_recording(request["recording_id"])["diagnosis"]
+    return "not diagnosed" if diagnosis is None else diagnosis["verdict"]
+
+
+def main() -> None:
+    url, motor, token_file, *wishes = sys.argv[1:]
+    with Client(url, token=Path(token_file).read_text(encoding="utf-8").strip()) as plant:
+        print_trend(plant, motor)
+        if "--record" in wishes:
+            print(f"{motor}: {record(plant, motor)}")
 
 
 if __name__ == "__main__":
-    sys.exit(main(*sys.argv[1:]))
+    main()

@@ -178,11 +178,10 @@ class Operations:
         name: str,
         *,
         quantity: Literal["mu_f", "theta_f", "load_level", "condition_level", "change"] | None = None,
-        from_: datetime | str | str | None = None,
-        to: datetime | str | str | None = None,
+        from_: datetime | str | None = None,
+        to: datetime | str | None = None,
         limit: int | None = None,
         cursor: str | None = None,
-        format_: Literal["json", "csv", "xlsx", "parquet"] | None = None,
     ) -> models.PageTrendPoint:
         """Return one figure for each recording of a motor, oldest first.
 
@@ -196,17 +195,14 @@ class Operations:
             Its name.
         quantity : Literal["mu_f", "theta_f", "load_level", "condition_level", "change"] or None
             Quantity.
-        from_ : datetime | str | str or None
+        from_ : datetime | str or None
             First time.
-        to : datetime | str | str or None
+        to : datetime | str or None
             First time not to be included.
         limit : int or None
             Most items of this page.
         cursor : str or None
             `next_cursor` of the page before; without: the first page.
-        format_ : Literal["json", "csv", "xlsx", "parquet"] or None
-            A file of the whole list instead of a page; without: by the header Accept, else
-            JSON.
 
         Returns
         -------
@@ -223,14 +219,7 @@ class Operations:
             self.transport.document(
                 "GET",
                 f"/api/v1/motors/{segment(name)}/trend",
-                query={
-                    "quantity": quantity,
-                    "from": from_,
-                    "to": to,
-                    "limit": limit,
-                    "cursor": cursor,
-                    "format": format_,
-                },
+                query={"quantity": quantity, "from": from_, "to": to, "limit": limit, "cursor": cursor},
             ),
         )
 
@@ -239,10 +228,9 @@ class Operations:
         name: str,
         *,
         quantity: Literal["mu_f", "theta_f", "load_level", "condition_level", "change"] | None = None,
-        from_: datetime | str | str | None = None,
-        to: datetime | str | str | None = None,
+        from_: datetime | str | None = None,
+        to: datetime | str | None = None,
         limit: int | None = None,
-        format_: Literal["json", "csv", "xlsx", "parquet"] | None = None,
     ) -> Iterator[models.TrendPoint]:
         """Return one figure for each recording of a motor, oldest first.
 
@@ -256,15 +244,12 @@ class Operations:
             Its name.
         quantity : Literal["mu_f", "theta_f", "load_level", "condition_level", "change"] or None
             Quantity.
-        from_ : datetime | str | str or None
+        from_ : datetime | str or None
             First time.
-        to : datetime | str | str or None
+        to : datetime | str or None
             First time not to be included.
         limit : int or None
             Most items of this page.
-        format_ : Literal["json", "csv", "xlsx", "parquet"] or None
-            A file of the whole list instead of a page; without: by the header Accept, else
-            JSON.
 
         Yields
         ------
@@ -278,9 +263,7 @@ class Operations:
         """
         cursor: str | None = None
         while True:
-            page = self.get_trend(
-                name, quantity=quantity, from_=from_, to=to, limit=limit, format_=format_, cursor=cursor
-            )
+            page = self.get_trend(name, quantity=quantity, from_=from_, to=to, limit=limit, cursor=cursor)
             yield from page["items"]
             cursor = page.get("next_cursor")
             if cursor is None:
@@ -293,7 +276,6 @@ class Operations:
         operation: models.Operation | None = None,
         limit: int | None = None,
         cursor: str | None = None,
-        format_: Literal["json", "csv", "xlsx", "parquet"] | None = None,
     ) -> models.PageListedRecording:
         """Return the recordings of a motor, latest first.
 
@@ -307,9 +289,6 @@ class Operations:
             Most items of this page.
         cursor : str or None
             `next_cursor` of the page before; without: the first page.
-        format_ : Literal["json", "csv", "xlsx", "parquet"] or None
-            A file of the whole list instead of a page; without: by the header Accept, else
-            JSON.
 
         Returns
         -------
@@ -326,17 +305,12 @@ class Operations:
             self.transport.document(
                 "GET",
                 f"/api/v1/motors/{segment(name)}/recordings",
-                query={"operation": operation, "limit": limit, "cursor": cursor, "format": format_},
+                query={"operation": operation, "limit": limit, "cursor": cursor},
             ),
         )
 
     def iter_recordings_of_motor(
-        self,
-        name: str,
-        *,
-        operation: models.Operation | None = None,
-        limit: int | None = None,
-        format_: Literal["json", "csv", "xlsx", "parquet"] | None = None,
+        self, name: str, *, operation: models.Operation | None = None, limit: int | None = None
     ) -> Iterator[models.ListedRecording]:
         """Return the recordings of a motor, latest first.
 
@@ -348,9 +322,6 @@ class Operations:
             What the motor does in them.
         limit : int or None
             Most items of this page.
-        format_ : Literal["json", "csv", "xlsx", "parquet"] or None
-            A file of the whole list instead of a page; without: by the header Accept, else
-            JSON.
 
         Yields
         ------
@@ -364,9 +335,7 @@ class Operations:
         """
         cursor: str | None = None
         while True:
-            page = self.list_recordings_of_motor(
-                name, operation=operation, limit=limit, format_=format_, cursor=cursor
-            )
+            page = self.list_recordings_of_motor(name, operation=operation, limit=limit, cursor=cursor)
             yield from page["items"]
             cursor = page.get("next_cursor")
             if cursor is None:
@@ -655,8 +624,8 @@ class Operations:
         self,
         name: str,
         *,
-        from_: datetime | str | str | None = None,
-        to: datetime | str | str | None = None,
+        from_: datetime | str | None = None,
+        to: datetime | str | None = None,
         limit: int | None = None,
         cursor: str | None = None,
     ) -> models.PageRotorTrendPoint:
@@ -666,9 +635,9 @@ class Operations:
         ----------
         name : str
             Its name.
-        from_ : datetime | str | str or None
+        from_ : datetime | str or None
             First time.
-        to : datetime | str | str or None
+        to : datetime | str or None
             First time not to be included.
         limit : int or None
             Most items of this page.
@@ -698,8 +667,8 @@ class Operations:
         self,
         name: str,
         *,
-        from_: datetime | str | str | None = None,
-        to: datetime | str | str | None = None,
+        from_: datetime | str | None = None,
+        to: datetime | str | None = None,
         limit: int | None = None,
     ) -> Iterator[models.RotorTrendPoint]:
         """Return what each recording of a motor shows of its rotor, oldest first.
@@ -708,9 +677,9 @@ class Operations:
         ----------
         name : str
             Its name.
-        from_ : datetime | str | str or None
+        from_ : datetime | str or None
             First time.
-        to : datetime | str | str or None
+        to : datetime | str or None
             First time not to be included.
         limit : int or None
             Most items of this page.
@@ -737,8 +706,8 @@ class Operations:
         self,
         name: str,
         *,
-        from_: datetime | str | str | None = None,
-        to: datetime | str | str | None = None,
+        from_: datetime | str | None = None,
+        to: datetime | str | None = None,
         limit: int | None = None,
         cursor: str | None = None,
     ) -> models.PageSwingTrendPoint:
@@ -748,9 +717,9 @@ class Operations:
         ----------
         name : str
             Its name.
-        from_ : datetime | str | str or None
+        from_ : datetime | str or None
             First time.
-        to : datetime | str | str or None
+        to : datetime | str or None
             First time not to be included.
         limit : int or None
             Most items of this page.
@@ -780,8 +749,8 @@ class Operations:
         self,
         name: str,
         *,
-        from_: datetime | str | str | None = None,
-        to: datetime | str | str | None = None,
+        from_: datetime | str | None = None,
+        to: datetime | str | None = None,
         limit: int | None = None,
     ) -> Iterator[models.SwingTrendPoint]:
         """Return what each recording of a motor shows of its air gap and of a load that swings, oldest first.
@@ -790,9 +759,9 @@ class Operations:
         ----------
         name : str
             Its name.
-        from_ : datetime | str | str or None
+        from_ : datetime | str or None
             First time.
-        to : datetime | str | str or None
+        to : datetime | str or None
             First time not to be included.
         limit : int or None
             Most items of this page.
@@ -819,8 +788,8 @@ class Operations:
         self,
         name: str,
         *,
-        from_: datetime | str | str | None = None,
-        to: datetime | str | str | None = None,
+        from_: datetime | str | None = None,
+        to: datetime | str | None = None,
         limit: int | None = None,
         cursor: str | None = None,
     ) -> models.PageSupplyTrendPoint:
@@ -830,9 +799,9 @@ class Operations:
         ----------
         name : str
             Its name.
-        from_ : datetime | str | str or None
+        from_ : datetime | str or None
             First time.
-        to : datetime | str | str or None
+        to : datetime | str or None
             First time not to be included.
         limit : int or None
             Most items of this page.
@@ -862,8 +831,8 @@ class Operations:
         self,
         name: str,
         *,
-        from_: datetime | str | str | None = None,
-        to: datetime | str | str | None = None,
+        from_: datetime | str | None = None,
+        to: datetime | str | None = None,
         limit: int | None = None,
     ) -> Iterator[models.SupplyTrendPoint]:
         """Return what each recording of a motor shows of its supply, oldest first.
@@ -872,9 +841,9 @@ class Operations:
         ----------
         name : str
             Its name.
-        from_ : datetime | str | str or None
+        from_ : datetime | str or None
             First time.
-        to : datetime | str | str or None
+        to : datetime | str or None
             First time not to be included.
         limit : int or None
             Most items of this page.
@@ -924,8 +893,8 @@ class Operations:
         self,
         name: str,
         *,
-        from_: datetime | str | str | None = None,
-        to: datetime | str | str | None = None,
+        from_: datetime | str | None = None,
+        to: datetime | str | None = None,
         limit: int | None = None,
         cursor: str | None = None,
     ) -> models.PageTrackedTrendPoint:
@@ -935,9 +904,9 @@ class Operations:
         ----------
         name : str
             Its name.
-        from_ : datetime | str | str or None
+        from_ : datetime | str or None
             First time.
-        to : datetime | str | str or None
+        to : datetime | str or None
             First time not to be included.
         limit : int or None
             Most items of this page.
@@ -967,8 +936,8 @@ class Operations:
         self,
         name: str,
         *,
-        from_: datetime | str | str | None = None,
-        to: datetime | str | str | None = None,
+        from_: datetime | str | None = None,
+        to: datetime | str | None = None,
         limit: int | None = None,
     ) -> Iterator[models.TrackedTrendPoint]:
         """Return the changes of a motor's parameters after each recording, oldest first.
@@ -977,9 +946,9 @@ class Operations:
         ----------
         name : str
             Its name.
-        from_ : datetime | str | str or None
+        from_ : datetime | str or None
             First time.
-        to : datetime | str | str or None
+        to : datetime | str or None
             First time not to be included.
         limit : int or None
             Most items of this page.
@@ -1328,11 +1297,10 @@ class Operations:
         name: str,
         *,
         step: models.AveragingStep | None = None,
-        from_: datetime | str | str | None = None,
-        to: datetime | str | str | None = None,
+        from_: datetime | str | None = None,
+        to: datetime | str | None = None,
         limit: int | None = None,
         cursor: str | None = None,
-        format_: Literal["json", "csv", "xlsx", "parquet"] | None = None,
     ) -> models.PageMeasurement:
         """Return what a motor's relay measures, oldest first: currents, voltages, power and frequency.
 
@@ -1342,17 +1310,14 @@ class Operations:
             Its name.
         step : AveragingStep or None
             0: as sampled; 60, 900: means of so many seconds, kept for longer.
-        from_ : datetime | str | str or None
+        from_ : datetime | str or None
             First time.
-        to : datetime | str | str or None
+        to : datetime | str or None
             First time not to be included.
         limit : int or None
             Most items of this page.
         cursor : str or None
             `next_cursor` of the page before; without: the first page.
-        format_ : Literal["json", "csv", "xlsx", "parquet"] or None
-            A file of the whole list instead of a page; without: by the header Accept, else
-            JSON.
 
         Returns
         -------
@@ -1369,14 +1334,7 @@ class Operations:
             self.transport.document(
                 "GET",
                 f"/api/v1/motors/{segment(name)}/measurements",
-                query={
-                    "step": step,
-                    "from": from_,
-                    "to": to,
-                    "limit": limit,
-                    "cursor": cursor,
-                    "format": format_,
-                },
+                query={"step": step, "from": from_, "to": to, "limit": limit, "cursor": cursor},
             ),
         )
 
@@ -1385,10 +1343,9 @@ class Operations:
         name: str,
         *,
         step: models.AveragingStep | None = None,
-        from_: datetime | str | str | None = None,
-        to: datetime | str | str | None = None,
+        from_: datetime | str | None = None,
+        to: datetime | str | None = None,
         limit: int | None = None,
-        format_: Literal["json", "csv", "xlsx", "parquet"] | None = None,
     ) -> Iterator[models.Measurement]:
         """Return what a motor's relay measures, oldest first: currents, voltages, power and frequency.
 
@@ -1398,15 +1355,12 @@ class Operations:
             Its name.
         step : AveragingStep or None
             0: as sampled; 60, 900: means of so many seconds, kept for longer.
-        from_ : datetime | str | str or None
+        from_ : datetime | str or None
             First time.
-        to : datetime | str | str or None
+        to : datetime | str or None
             First time not to be included.
         limit : int or None
             Most items of this page.
-        format_ : Literal["json", "csv", "xlsx", "parquet"] or None
-            A file of the whole list instead of a page; without: by the header Accept, else
-            JSON.
 
         Yields
         ------
@@ -1420,9 +1374,7 @@ class Operations:
         """
         cursor: str | None = None
         while True:
-            page = self.list_measurements(
-                name, step=step, from_=from_, to=to, limit=limit, format_=format_, cursor=cursor
-            )
+            page = self.list_measurements(name, step=step, from_=from_, to=to, limit=limit, cursor=cursor)
             yield from page["items"]
             cursor = page.get("next_cursor")
             if cursor is None:
@@ -1597,7 +1549,6 @@ class Operations:
         part_of: str | None = None,
         limit: int | None = None,
         cursor: str | None = None,
-        format_: Literal["json", "csv", "xlsx", "parquet"] | None = None,
     ) -> models.PageAlarm:
         """Return the alarms, over or not, latest first.
 
@@ -1615,9 +1566,6 @@ class Operations:
             Most items of this page.
         cursor : str or None
             `next_cursor` of the page before; without: the first page.
-        format_ : Literal["json", "csv", "xlsx", "parquet"] or None
-            A file of the whole list instead of a page; without: by the header Accept, else
-            JSON.
 
         Returns
         -------
@@ -1641,7 +1589,6 @@ class Operations:
                     "part_of": part_of,
                     "limit": limit,
                     "cursor": cursor,
-                    "format": format_,
                 },
             ),
         )
@@ -1654,7 +1601,6 @@ class Operations:
         standing: bool | None = None,
         part_of: str | None = None,
         limit: int | None = None,
-        format_: Literal["json", "csv", "xlsx", "parquet"] | None = None,
     ) -> Iterator[models.Alarm]:
         """Return the alarms, over or not, latest first.
 
@@ -1670,9 +1616,6 @@ class Operations:
             Only those that this alarm tells in one line.
         limit : int or None
             Most items of this page.
-        format_ : Literal["json", "csv", "xlsx", "parquet"] or None
-            A file of the whole list instead of a page; without: by the header Accept, else
-            JSON.
 
         Yields
         ------
@@ -1687,13 +1630,7 @@ class Operations:
         cursor: str | None = None
         while True:
             page = self.list_alarms(
-                ied=ied,
-                motor=motor,
-                standing=standing,
-                part_of=part_of,
-                limit=limit,
-                format_=format_,
-                cursor=cursor,
+                ied=ied, motor=motor, standing=standing, part_of=part_of, limit=limit, cursor=cursor
             )
             yield from page["items"]
             cursor = page.get("next_cursor")
@@ -1709,7 +1646,6 @@ class Operations:
         state: models.AlarmState | None = None,
         limit: int | None = None,
         cursor: str | None = None,
-        format_: Literal["json", "csv", "xlsx", "parquet"] | None = None,
     ) -> models.PageAlarm:
         """Return the alarms that are not over, what to act on first at the top.
 
@@ -1730,9 +1666,6 @@ class Operations:
             Most items of this page.
         cursor : str or None
             `next_cursor` of the page before; without: the first page.
-        format_ : Literal["json", "csv", "xlsx", "parquet"] or None
-            A file of the whole list instead of a page; without: by the header Accept, else
-            JSON.
 
         Returns
         -------
@@ -1756,7 +1689,6 @@ class Operations:
                     "state": state,
                     "limit": limit,
                     "cursor": cursor,
-                    "format": format_,
                 },
             ),
         )
@@ -1769,7 +1701,6 @@ class Operations:
         motor: str | None = None,
         state: models.AlarmState | None = None,
         limit: int | None = None,
-        format_: Literal["json", "csv", "xlsx", "parquet"] | None = None,
     ) -> Iterator[models.Alarm]:
         """Return the alarms that are not over, what to act on first at the top.
 
@@ -1788,9 +1719,6 @@ class Operations:
             Only alarms in this state.
         limit : int or None
             Most items of this page.
-        format_ : Literal["json", "csv", "xlsx", "parquet"] or None
-            A file of the whole list instead of a page; without: by the header Accept, else
-            JSON.
 
         Yields
         ------
@@ -1805,7 +1733,7 @@ class Operations:
         cursor: str | None = None
         while True:
             page = self.list_open_alarms(
-                site=site, ied=ied, motor=motor, state=state, limit=limit, format_=format_, cursor=cursor
+                site=site, ied=ied, motor=motor, state=state, limit=limit, cursor=cursor
             )
             yield from page["items"]
             cursor = page.get("next_cursor")
@@ -2205,7 +2133,6 @@ class Operations:
         operation: models.Operation | None = None,
         limit: int | None = None,
         cursor: str | None = None,
-        format_: Literal["json", "csv", "xlsx", "parquet"] | None = None,
     ) -> models.PageListedRecording:
         """Return recordings, of one motor or of all, in one state or in any, of any operation, latest first.
 
@@ -2221,9 +2148,6 @@ class Operations:
             Most items of this page.
         cursor : str or None
             `next_cursor` of the page before; without: the first page.
-        format_ : Literal["json", "csv", "xlsx", "parquet"] or None
-            A file of the whole list instead of a page; without: by the header Accept, else
-            JSON.
 
         Returns
         -------
@@ -2246,7 +2170,6 @@ class Operations:
                     "operation": operation,
                     "limit": limit,
                     "cursor": cursor,
-                    "format": format_,
                 },
             ),
         )
@@ -2258,7 +2181,6 @@ class Operations:
         state: models.RecordingState | None = None,
         operation: models.Operation | None = None,
         limit: int | None = None,
-        format_: Literal["json", "csv", "xlsx", "parquet"] | None = None,
     ) -> Iterator[models.ListedRecording]:
         """Return recordings, of one motor or of all, in one state or in any, of any operation, latest first.
 
@@ -2272,9 +2194,6 @@ class Operations:
             What the motor does in them.
         limit : int or None
             Most items of this page.
-        format_ : Literal["json", "csv", "xlsx", "parquet"] or None
-            A file of the whole list instead of a page; without: by the header Accept, else
-            JSON.
 
         Yields
         ------
@@ -2289,7 +2208,7 @@ class Operations:
         cursor: str | None = None
         while True:
             page = self.list_recordings(
-                motor=motor, state=state, operation=operation, limit=limit, format_=format_, cursor=cursor
+                motor=motor, state=state, operation=operation, limit=limit, cursor=cursor
             )
             yield from page["items"]
             cursor = page.get("next_cursor")
@@ -2826,8 +2745,8 @@ class Operations:
         sink: BinaryIO,
         *,
         motor: Sequence[str] | None = None,
-        from_: datetime | str | str | None = None,
-        to: datetime | str | str | None = None,
+        from_: datetime | str | None = None,
+        to: datetime | str | None = None,
         format_: models.Format | None = None,
     ) -> int:
         """Return what each recording says, of one motor after another, oldest first.
@@ -2838,9 +2757,9 @@ class Operations:
             Takes the file.
         motor : Sequence[str] or None
             Only these, in this order; without: all.
-        from_ : datetime | str | str or None
+        from_ : datetime | str or None
             First time.
-        to : datetime | str | str or None
+        to : datetime | str or None
             First time not to be included.
         format_ : Format or None
             Without: by the header Accept, else CSV.
@@ -2865,8 +2784,8 @@ class Operations:
         *,
         motor: Sequence[str] | None = None,
         step: models.AveragingStep | None = None,
-        from_: datetime | str | str | None = None,
-        to: datetime | str | str | None = None,
+        from_: datetime | str | None = None,
+        to: datetime | str | None = None,
         format_: models.Format | None = None,
     ) -> int:
         """Return what the relays measure all the time, of one motor after another, oldest first.
@@ -2879,9 +2798,9 @@ class Operations:
             Only these, in this order; without: all.
         step : AveragingStep or None
             0: as sampled; 60, 900: means of so many seconds, kept for longer.
-        from_ : datetime | str | str or None
+        from_ : datetime | str or None
             First time.
-        to : datetime | str | str or None
+        to : datetime | str or None
             First time not to be included.
         format_ : Format or None
             Without: by the header Accept, else CSV.
@@ -2987,7 +2906,7 @@ class Operations:
         sink: BinaryIO,
         *,
         period: Literal["daily", "weekly"] | None = None,
-        until: datetime | str | str | None = None,
+        until: datetime | str | None = None,
         site: Sequence[str] | None = None,
         format_: models.ReportFormat | None = None,
     ) -> int:
@@ -2999,7 +2918,7 @@ class Operations:
             Takes the file.
         period : Literal["daily", "weekly"] or None
             Period.
-        until : datetime | str | str or None
+        until : datetime | str or None
             Nothing later is told; without: now.
         site : Sequence[str] or None
             Only these sites; without: all.
@@ -3027,7 +2946,7 @@ class Operations:
         name: str,
         sink: BinaryIO,
         *,
-        until: datetime | str | str | None = None,
+        until: datetime | str | None = None,
         format_: models.ReportFormat | None = None,
     ) -> int:
         """Return all of one motor until a time, with its pictures.
@@ -3038,7 +2957,7 @@ class Operations:
             Its name.
         sink : BinaryIO
             Takes the file.
-        until : datetime | str | str or None
+        until : datetime | str or None
             Nothing later is told; without: now.
         format_ : ReportFormat or None
             PDF, or an Excel workbook.
@@ -3270,8 +3189,8 @@ class Operations:
         actor: str | None = None,
         action: models.AuditAction | None = None,
         subject: str | None = None,
-        from_: datetime | str | str | None = None,
-        to: datetime | str | str | None = None,
+        from_: datetime | str | None = None,
+        to: datetime | str | None = None,
         limit: int | None = None,
         cursor: str | None = None,
     ) -> models.PageAuditEntry:
@@ -3285,9 +3204,9 @@ class Operations:
             Action.
         subject : str or None
             Name or id of what was changed.
-        from_ : datetime | str | str or None
+        from_ : datetime | str or None
             First time.
-        to : datetime | str | str or None
+        to : datetime | str or None
             First time not to be included.
         limit : int or None
             Most items of this page.
@@ -3327,8 +3246,8 @@ class Operations:
         actor: str | None = None,
         action: models.AuditAction | None = None,
         subject: str | None = None,
-        from_: datetime | str | str | None = None,
-        to: datetime | str | str | None = None,
+        from_: datetime | str | None = None,
+        to: datetime | str | None = None,
         limit: int | None = None,
     ) -> Iterator[models.AuditEntry]:
         """Return who changed what, latest first.
@@ -3341,9 +3260,9 @@ class Operations:
             Action.
         subject : str or None
             Name or id of what was changed.
-        from_ : datetime | str | str or None
+        from_ : datetime | str or None
             First time.
-        to : datetime | str | str or None
+        to : datetime | str or None
             First time not to be included.
         limit : int or None
             Most items of this page.

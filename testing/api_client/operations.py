@@ -84,6 +84,9 @@ def _methods(verb: str, path: str, operation: Json) -> Iterator[str]:
     told = operation.get("description") or operation["summary"] + "."
     call = _call(path, arguments)
     if schema is not None:
+        # Lists come as files too where one asks for that; the exports are what files are for.
+        arguments = [argument for argument in arguments if argument.sent != "format"]
+        call = _call(path, arguments)
         model = python_name(schema["$ref"])
         several = len(answers) > 1
         yield _method(
@@ -266,7 +269,7 @@ def python_type(schema: Json) -> str:
     for several in ("anyOf", "oneOf", "allOf"):
         if several in schema:
             kinds = [python_type(each) for each in schema[several] if each.get("type") != "null"]
-            return " | ".join(dict.fromkeys(kinds))
+            return " | ".join(dict.fromkeys(" | ".join(kinds).split(" | ")))
     if "enum" in schema:
         return f"Literal[{', '.join(repr(each) for each in schema['enum'])}]".replace("'", '"')
     match schema.get("type"):

@@ -33,7 +33,7 @@ def log_out(url: str, *, as_json: bool) -> None:
     with failing_clearly(ServiceError, CredentialsError):
         try:
             with ServiceClient(url) as service:
-                service.send("POST", "/logout")
+                service.api.log_out()
         except ServiceError as error:
             if error.status is None:
                 print_warning(f"the session is forgotten here, and may go on there: {error}")
@@ -63,7 +63,7 @@ def change_password(url: str, *, old_file: str | None, new_file: str | None, as_
     new = given_password(new_file, "new password", again=True)
     with failing_clearly(ServiceError, CredentialsError):
         with ServiceClient(url) as service:
-            service.send("PUT", "/account/password", {"old": old, "new": new})
+            service.api.change_password(document={"old": old, "new": new})
         forget(url)
     if as_json:
         print_document({})

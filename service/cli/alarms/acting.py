@@ -20,6 +20,7 @@ from service.cli.output import (
     results,
 )
 from service.client.rest_client import Document, ServiceClient, ServiceError
+from statorwatch_client import models
 
 AT_ONCE = 100
 """So many alarms are acknowledged in one request."""
@@ -121,11 +122,11 @@ def _print(alarm: Document, *, as_json: bool) -> None:
 
 def _of_motor(service: ServiceClient, motor: str) -> list[str]:
     """Return the ids of a motor's alarms that somebody has to take notice of. Raises ServiceError."""
-    waiting = ("unacknowledged", "returned-unacknowledged")
+    waiting: tuple[models.AlarmState, ...] = ("unacknowledged", "returned-unacknowledged")
     return [
         str(alarm["id"])
         for state in waiting
-        for alarm in service.items("/alarms/open", limit="1000", motor=motor, state=state)
+        for alarm in service.api.iter_open_alarms(limit=1000, motor=motor, state=state)
     ]
 
 

@@ -1,6 +1,7 @@
 """`mcc condition`, `note`, `notes`, `withdraw-note`, `restart-reference`: a motor over time and its notes."""
 
 import getpass
+from collections.abc import Sequence
 from itertools import islice
 from typing import cast
 
@@ -20,7 +21,7 @@ from service.cli.output import (
     results,
 )
 from service.client.conditions import condition_lines, state_text
-from service.client.rest_client import Document, ServiceClient, ServiceError, segment
+from service.client.rest_client import Document, ServiceClient, ServiceError
 from service.client.tables import FittedTable
 from service.client.verdicts import level, to_the_second
 from statorwatch_client import models
@@ -31,10 +32,9 @@ MOST_CHANGES = 1000
 
 def show_condition(url: str, motor: str, *, history: bool, as_json: bool) -> None:
     """Print a motor's condition, and perhaps how it came to be. Raises CommandError."""
-    path = f"/motors/{segment(motor)}/condition"
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        condition = service.get(path)
-        changes = list(islice(service.items(f"{path}/history"), MOST_CHANGES)) if history else []
+        condition = service.api.get_condition(motor)
+        changes = list(islice(service.api.iter_condition_history(motor), MOST_CHANGES)) if history else []
         notes = {note["id"]: note for note in _notes(service, motor)} if history else {}
     if as_json:
         print_document({**condition, "changes": changes} if history else condition)
@@ -115,7 +115,7 @@ def _notes(service: ServiceClient, motor: str) -> "islice[Document]":
     return islice(service.api.iter_notes(motor, limit=1000), MOST_CHANGES)
 
 
-def _history_table(changes: list[Document], notes: dict[object, Document]) -> FittedTable:
+def _history_table(changes: Sequence[Document], notes: dict[object, Document]) -> FittedTable:
     table = FittedTable(box=SIMPLE_HEAD, collapse_padding=True)
     table.add_column("time", no_wrap=True)
     table.add_column("condition")
@@ -140,7 +140,7 @@ def _waits_for_a_record(service: ServiceClient, note: Document) -> bool:
     """Return whether a note ends the reference, and no record is later. Raises ServiceError."""
     if note["kind"] not in ENDING:
         return False
-    as_of = service.get(f"/motors/{segment(str(note['motor']))}/condition", history="0")["as_of"]
+    as_of = service.api.get_condition(str(note["motor"]), history=0)["as_of"]
     return as_of is None or nanoseconds(str(as_of)) < nanoseconds(str(note["time"]))
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from itertools import islice
+from typing import cast
 
 from rich.text import Text
 
@@ -10,6 +11,7 @@ from service.cli.output import WRONG_USE, CommandError, failing_clearly, print_d
 from service.cli.rows import Column, print_rows
 from service.client.rest_client import Document, ServiceClient, ServiceError
 from service.client.verdicts import to_the_second
+from statorwatch_client import models
 
 STATE_COLOURS = {"sent": "green", "dead": "red", "queued": "yellow", "sending": "yellow"}
 
@@ -18,10 +20,14 @@ def list_notifications(
     url: str, *, state: str | None, channel: str | None, alarm: str | None, limit: int, as_json: bool
 ) -> None:
     """Print messages, latest first, and why those were not sent that were not. Raises CommandError."""
-    given = {"state": state, "channel": channel, "alarm": alarm}
-    chosen = {name: word for name, word in given.items() if word is not None}
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        found = list(islice(service.items("/notifications", limit=str(min(limit, 1000)), **chosen), limit))
+        messages = service.api.iter_notifications(
+            state=cast("models.NotificationState | None", state),
+            channel=channel,
+            alarm=alarm,
+            limit=min(limit, 1000),
+        )
+        found = list(islice(messages, limit))
     if as_json:
         print_document({"notifications": found})
         return

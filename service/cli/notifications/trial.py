@@ -7,7 +7,7 @@ from rich.text import Text
 
 from core.error_words import one_line
 from service.cli.output import DONE, FAILED, CommandError, failing_clearly, print_document, results
-from service.client.rest_client import Document, ServiceClient, ServiceError, segment
+from service.client.rest_client import Document, ServiceClient, ServiceError
 
 POLL_PERIOD_S = 0.2
 ENDED = ("sent", "dead", "withdrawn")
@@ -44,7 +44,7 @@ def _followed(service: ServiceClient, tests: Sequence[Document], wait_s: float) 
             if one["state"] in ENDED
             else {
                 key: value
-                for key, value in service.get(f"/notifications/{segment(str(one['id']))}").items()
+                for key, value in service.api.get_notification(str(one["id"])).items()
                 if key != "told"
             }
             for one in found

@@ -2,6 +2,7 @@
 
 from itertools import islice
 from pathlib import Path
+from typing import cast
 
 from rich.text import Text
 
@@ -10,6 +11,7 @@ from service.cli.output import failing_clearly, print_document, results
 from service.cli.rows import Column, print_rows, require_one_format
 from service.client.rest_client import Document, ServiceClient, ServiceError
 from service.client.verdicts import to_the_second, verdict_text
+from statorwatch_client import models
 
 FIELDS = (
     "recorded_time", "motor", "ied", "source", "name", "state", "operation", "operation_remark", "verdict",
@@ -30,10 +32,14 @@ def show_recordings(
 ) -> None:
     """Print recordings, latest first. Raises CommandError."""
     require_one_format(as_csv=as_csv, as_json=as_json)
-    filters = (("motor", motor), ("state", state), ("operation", operation))
-    chosen = {name: word for name, word in filters if word is not None}
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        found = list(islice(service.items("/recordings", limit=str(min(limit, 1000)), **chosen), limit))
+        recordings = service.api.iter_recordings(
+            motor=motor,
+            state=cast("models.RecordingState | None", state),
+            operation=cast("models.Operation | None", operation),
+            limit=min(limit, 1000),
+        )
+        found = list(islice(recordings, limit))
     columns: dict[str, Column] = {
         "recorded": lambda one: to_the_second(one["recorded_time"] or one["announced_time"]),
         "motor": lambda one: str(one["motor"]),
