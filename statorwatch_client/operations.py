@@ -1559,7 +1559,7 @@ class Operations:
         motor : str or None
             Only alarms of this motor.
         standing : bool or None
-            true: those whose cause stands; false: those whose is gone; without: both.
+            True: those whose cause stands; false: those whose is gone; without: both.
         part_of : str or None
             Only those that this alarm tells in one line.
         limit : int or None
@@ -1611,7 +1611,7 @@ class Operations:
         motor : str or None
             Only alarms of this motor.
         standing : bool or None
-            true: those whose cause stands; false: those whose is gone; without: both.
+            True: those whose cause stands; false: those whose is gone; without: both.
         part_of : str or None
             Only those that this alarm tells in one line.
         limit : int or None

@@ -247,7 +247,7 @@ def _body(operation: Json) -> Iterator[Argument]:
 def _told(parameter: Json, schema: Json) -> str:
     told = parameter.get("description") or schema.get("description")
     if told:
-        return str(told)
+        return f"{told[0].upper()}{told[1:]}"
     name = str(parameter["name"])
     return "Its name." if name == "name" else name.replace("_", " ").capitalize() + "."
 

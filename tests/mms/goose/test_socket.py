@@ -1,0 +1,58 @@
+"""Raw sockets on a real pair of Ethernet interfaces, in a network namespace of the test's own."""
+
+import subprocess
+import sys
+
+import pytest
+
+from mms.goose import RawSocket, RawSocketError
+
+IN_NAMESPACE = ("unshare", "--user", "--map-root-user", "--net")
+EXCHANGE = """
+import subprocess
+from dataclasses import replace
+from mms.goose import RawSocket, decode_frame, encode_frame
+from tests.mms.goose.messages import FRAME, DESTINATION
+
+for words in ("link add left type veth peer name right", "link set left up", "link set right up"):
+    subprocess.run(["ip", *words.split()], check=True)
+with RawSocket("left") as sender, RawSocket("right", [DESTINATION]) as receiver:
+    receiver.wait_at_most(10)
+    sent = replace(FRAME, source=sender.address)
+    sender.send(encode_frame(sent))
+    assert decode_frame(receiver.receive()) == sent
+print("exchanged")
+"""
+
+
+def can_make_namespaces() -> bool:
+    return subprocess.run([*IN_NAMESPACE, "ip", "link"], capture_output=True, check=False).returncode == 0
+
+
+def test_a_frame_crosses_a_pair_of_interfaces() -> None:
+    if not can_make_namespaces():
+        pytest.skip("the kernel lets nobody make a network namespace here, or iproute2 is missing")
+    done = subprocess.run(
+        [*IN_NAMESPACE, sys.executable, "-c", EXCHANGE], capture_output=True, text=True, check=False
+    )
+    assert (done.stdout, done.returncode) == ("exchanged\n", 0), done.stderr
+
+
+def test_without_the_capability_it_says_which_is_missing() -> None:
+    """In a user's namespace of its own a process has no rights over the machine's interfaces."""
+    if not can_make_namespaces():
+        pytest.skip("the kernel lets nobody make a namespace here")
+    told = (
+        "from mms.goose import RawSocket, RawSocketError\n"
+        "try:\n    RawSocket('lo')\nexcept RawSocketError as error:\n    print(error)"
+    )
+    words = ["unshare", "--user", "--map-root-user", sys.executable, "-c", told]
+    done = subprocess.run(words, capture_output=True, text=True, check=True)
+    assert done.stdout == (
+        "lo: a raw socket needs the capability CAP_NET_RAW, which this process does not have\n"
+    )
+
+
+def test_an_interface_that_is_none_is_named() -> None:
+    with pytest.raises(RawSocketError, match=r"nosuch0: expected a network interface .* lo"):
+        RawSocket("nosuch0")
