@@ -1,12 +1,17 @@
 """Every operation of the API as a method. Made by `make client`; not to be edited."""
 
 # ruff: noqa: E501
-from collections.abc import Iterator, Mapping, Sequence
-from datetime import datetime
-from typing import BinaryIO, Literal, cast
+from __future__ import annotations
 
-from statorwatch_client import models
+from typing import TYPE_CHECKING, BinaryIO, Literal, cast
+
 from statorwatch_client.transport import Transport, segment
+
+if TYPE_CHECKING:  # types alone, which need not be made at each start of a program
+    from collections.abc import Iterator, Mapping, Sequence
+    from datetime import datetime
+
+    from statorwatch_client import models
 
 
 class Operations:

@@ -1,16 +1,21 @@
 """The client of the command line and the demo: the typed client, and who asks as `mcc login` says."""
 
+from __future__ import annotations
+
 import os
 import re
 import ssl
 from collections.abc import Iterator, Mapping, Sequence
 from http import HTTPStatus
 from types import TracebackType
-from typing import BinaryIO, Self, cast
+from typing import TYPE_CHECKING, BinaryIO, Self, cast
 
 from service.client.credentials import COOKIES, CredentialsError, bearer, headers_for
-from statorwatch_client import Client, ServiceError, models
+from statorwatch_client import Client, ServiceError
 from statorwatch_client.transport import is_in_clear, segment, without_credentials
+
+if TYPE_CHECKING:
+    from statorwatch_client import models
 
 __all__ = [
     "Document",

@@ -3,12 +3,14 @@
 The database is for who owns its files: they manage users without being one, which makes the first user.
 """
 
+from __future__ import annotations
+
 import getpass
 import time
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Protocol, cast
+from typing import TYPE_CHECKING, Protocol, cast
 
 from sqlalchemy.exc import SQLAlchemyError
 
@@ -23,7 +25,9 @@ from service.configuration.settings import Settings, SettingsError
 from service.storage import Repository, StorageError, connect, migrate
 from service.storage.records import Actor, Role
 from service.storage.records import User as StoredUser
-from statorwatch_client import models
+
+if TYPE_CHECKING:
+    from statorwatch_client import models
 
 AT_ONCE = 1000
 

@@ -1,9 +1,12 @@
 """`mcc alarms acknowledge`, `shelve`, `unshelve`, `out-of-service`, `back-in-service`."""
 
+from __future__ import annotations
+
 import math
 import re
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
+from typing import TYPE_CHECKING
 
 from rich.text import Text
 
@@ -20,7 +23,9 @@ from service.cli.output import (
     results,
 )
 from service.client.rest_client import Document, ServiceClient, ServiceError
-from statorwatch_client import models
+
+if TYPE_CHECKING:
+    from statorwatch_client import models
 
 AT_ONCE = 100
 """So many alarms are acknowledged in one request."""

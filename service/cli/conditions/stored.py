@@ -1,9 +1,11 @@
 """`mcc condition`, `note`, `notes`, `withdraw-note`, `restart-reference`: a motor over time and its notes."""
 
+from __future__ import annotations
+
 import getpass
 from collections.abc import Sequence
 from itertools import islice
-from typing import cast
+from typing import TYPE_CHECKING, cast
 
 from rich.box import SIMPLE_HEAD
 from rich.text import Text
@@ -24,7 +26,9 @@ from service.client.conditions import condition_lines, state_text
 from service.client.rest_client import Document, ServiceClient, ServiceError
 from service.client.tables import FittedTable
 from service.client.verdicts import level, to_the_second
-from statorwatch_client import models
+
+if TYPE_CHECKING:
+    from statorwatch_client import models
 
 MOST_CHANGES = 1000
 """So many changes are shown, the latest first."""
@@ -111,7 +115,7 @@ def withdraw_note(url: str, motor: str, note_id: str, reason: str, *, by: str | 
     results().print(Text(one_line(words)), soft_wrap=True)
 
 
-def _notes(service: ServiceClient, motor: str) -> "islice[Document]":
+def _notes(service: ServiceClient, motor: str) -> islice[Document]:
     return islice(service.api.iter_notes(motor, limit=1000), MOST_CHANGES)
 
 

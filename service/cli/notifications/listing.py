@@ -1,8 +1,10 @@
 """`mcc notify list`, `channels`, `retry`."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from itertools import islice
-from typing import cast
+from typing import TYPE_CHECKING, cast
 
 from rich.text import Text
 
@@ -11,7 +13,9 @@ from service.cli.output import WRONG_USE, CommandError, failing_clearly, print_d
 from service.cli.rows import Column, print_rows
 from service.client.rest_client import Document, ServiceClient, ServiceError
 from service.client.verdicts import to_the_second
-from statorwatch_client import models
+
+if TYPE_CHECKING:
+    from statorwatch_client import models
 
 STATE_COLOURS = {"sent": "green", "dead": "red", "queued": "yellow", "sending": "yellow"}
 

@@ -1,7 +1,10 @@
 """`mcc baseline`: the healthy recordings that a motor is compared with."""
 
+from __future__ import annotations
+
 import getpass
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from rich.text import Text
 
@@ -10,7 +13,9 @@ from service.cli.output import failing_clearly, print_document, results
 from service.cli.rows import print_rows, require_one_format
 from service.client.rest_client import Document, ServiceClient, ServiceError
 from service.client.verdicts import to_the_second
-from statorwatch_client import models
+
+if TYPE_CHECKING:
+    from statorwatch_client import models
 
 FIELDS = ("recorded_time", "motor", "ied", "name", "doubt", "id")
 

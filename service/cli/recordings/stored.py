@@ -1,8 +1,10 @@
 """`mcc recordings`: what recordings the service has, and how one leaves it."""
 
+from __future__ import annotations
+
 from itertools import islice
 from pathlib import Path
-from typing import cast
+from typing import TYPE_CHECKING, cast
 
 from rich.text import Text
 
@@ -11,7 +13,9 @@ from service.cli.output import failing_clearly, print_document, results
 from service.cli.rows import Column, print_rows, require_one_format
 from service.client.rest_client import Document, ServiceClient, ServiceError
 from service.client.verdicts import to_the_second, verdict_text
-from statorwatch_client import models
+
+if TYPE_CHECKING:
+    from statorwatch_client import models
 
 FIELDS = (
     "recorded_time", "motor", "ied", "source", "name", "state", "operation", "operation_remark", "verdict",
