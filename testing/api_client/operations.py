@@ -136,7 +136,7 @@ def _iterator(name: str, arguments: list[Argument], item: str, told: str) -> str
         "cursor: str | None = None\n"
         "while True:\n"
         f"    page = self.{name}({given + ', ' if given else ''}cursor=cursor)\n"
-        '    yield from page["items"]\n'
+        "    yield from self.transport.listed(page)\n"
         '    cursor = page.get("next_cursor")\n'
         "    if cursor is None:\n"
         "        return"
