@@ -72,7 +72,7 @@ class Operations:
         cursor: str | None = None
         while True:
             page = self.list_sites(limit=limit, cursor=cursor)
-            yield from self.transport.listed(page)
+            yield from self.transport.listed(page, "/api/v1/sites")
             cursor = page.get("next_cursor")
             if cursor is None:
                 return
@@ -133,7 +133,7 @@ class Operations:
         cursor: str | None = None
         while True:
             page = self.list_motors(health=health, limit=limit, cursor=cursor)
-            yield from self.transport.listed(page)
+            yield from self.transport.listed(page, "/api/v1/motors")
             cursor = page.get("next_cursor")
             if cursor is None:
                 return
@@ -269,7 +269,7 @@ class Operations:
         cursor: str | None = None
         while True:
             page = self.get_trend(name, quantity=quantity, from_=from_, to=to, limit=limit, cursor=cursor)
-            yield from self.transport.listed(page)
+            yield from self.transport.listed(page, f"/api/v1/motors/{segment(name)}/trend")
             cursor = page.get("next_cursor")
             if cursor is None:
                 return
@@ -341,7 +341,7 @@ class Operations:
         cursor: str | None = None
         while True:
             page = self.list_recordings_of_motor(name, operation=operation, limit=limit, cursor=cursor)
-            yield from self.transport.listed(page)
+            yield from self.transport.listed(page, f"/api/v1/motors/{segment(name)}/recordings")
             cursor = page.get("next_cursor")
             if cursor is None:
                 return
@@ -431,7 +431,7 @@ class Operations:
         cursor: str | None = None
         while True:
             page = self.list_condition_history(name, limit=limit, cursor=cursor)
-            yield from self.transport.listed(page)
+            yield from self.transport.listed(page, f"/api/v1/motors/{segment(name)}/condition/history")
             cursor = page.get("next_cursor")
             if cursor is None:
                 return
@@ -490,7 +490,7 @@ class Operations:
         cursor: str | None = None
         while True:
             page = self.list_notes(name, limit=limit, cursor=cursor)
-            yield from self.transport.listed(page)
+            yield from self.transport.listed(page, f"/api/v1/motors/{segment(name)}/notes")
             cursor = page.get("next_cursor")
             if cursor is None:
                 return
@@ -702,7 +702,7 @@ class Operations:
         cursor: str | None = None
         while True:
             page = self.list_rotor_trend(name, from_=from_, to=to, limit=limit, cursor=cursor)
-            yield from self.transport.listed(page)
+            yield from self.transport.listed(page, f"/api/v1/motors/{segment(name)}/rotor/trend")
             cursor = page.get("next_cursor")
             if cursor is None:
                 return
@@ -784,7 +784,7 @@ class Operations:
         cursor: str | None = None
         while True:
             page = self.list_swing_trend(name, from_=from_, to=to, limit=limit, cursor=cursor)
-            yield from self.transport.listed(page)
+            yield from self.transport.listed(page, f"/api/v1/motors/{segment(name)}/swings/trend")
             cursor = page.get("next_cursor")
             if cursor is None:
                 return
@@ -866,7 +866,7 @@ class Operations:
         cursor: str | None = None
         while True:
             page = self.list_supply_trend(name, from_=from_, to=to, limit=limit, cursor=cursor)
-            yield from self.transport.listed(page)
+            yield from self.transport.listed(page, f"/api/v1/motors/{segment(name)}/supply/trend")
             cursor = page.get("next_cursor")
             if cursor is None:
                 return
@@ -971,7 +971,7 @@ class Operations:
         cursor: str | None = None
         while True:
             page = self.list_tracked_trend(name, from_=from_, to=to, limit=limit, cursor=cursor)
-            yield from self.transport.listed(page)
+            yield from self.transport.listed(page, f"/api/v1/motors/{segment(name)}/parameters/trend")
             cursor = page.get("next_cursor")
             if cursor is None:
                 return
@@ -1165,7 +1165,7 @@ class Operations:
         cursor: str | None = None
         while True:
             page = self.list_starts(name, limit=limit, cursor=cursor)
-            yield from self.transport.listed(page)
+            yield from self.transport.listed(page, f"/api/v1/motors/{segment(name)}/starts")
             cursor = page.get("next_cursor")
             if cursor is None:
                 return
@@ -1251,7 +1251,7 @@ class Operations:
         cursor: str | None = None
         while True:
             page = self.list_relay_events(name, limit=limit, cursor=cursor)
-            yield from self.transport.listed(page)
+            yield from self.transport.listed(page, f"/api/v1/motors/{segment(name)}/relay-events")
             cursor = page.get("next_cursor")
             if cursor is None:
                 return
@@ -1380,7 +1380,7 @@ class Operations:
         cursor: str | None = None
         while True:
             page = self.list_measurements(name, step=step, from_=from_, to=to, limit=limit, cursor=cursor)
-            yield from self.transport.listed(page)
+            yield from self.transport.listed(page, f"/api/v1/motors/{segment(name)}/measurements")
             cursor = page.get("next_cursor")
             if cursor is None:
                 return
@@ -1431,7 +1431,7 @@ class Operations:
         cursor: str | None = None
         while True:
             page = self.list_ieds(limit=limit, cursor=cursor)
-            yield from self.transport.listed(page)
+            yield from self.transport.listed(page, "/api/v1/ieds")
             cursor = page.get("next_cursor")
             if cursor is None:
                 return
@@ -1525,7 +1525,7 @@ class Operations:
         cursor: str | None = None
         while True:
             page = self.list_link_changes(name, limit=limit, cursor=cursor)
-            yield from self.transport.listed(page)
+            yield from self.transport.listed(page, f"/api/v1/ieds/{segment(name)}/link-changes")
             cursor = page.get("next_cursor")
             if cursor is None:
                 return
@@ -1637,7 +1637,7 @@ class Operations:
             page = self.list_alarms(
                 ied=ied, motor=motor, standing=standing, part_of=part_of, limit=limit, cursor=cursor
             )
-            yield from self.transport.listed(page)
+            yield from self.transport.listed(page, "/api/v1/alarms")
             cursor = page.get("next_cursor")
             if cursor is None:
                 return
@@ -1740,7 +1740,7 @@ class Operations:
             page = self.list_open_alarms(
                 site=site, ied=ied, motor=motor, state=state, limit=limit, cursor=cursor
             )
-            yield from self.transport.listed(page)
+            yield from self.transport.listed(page, "/api/v1/alarms/open")
             cursor = page.get("next_cursor")
             if cursor is None:
                 return
@@ -1842,7 +1842,7 @@ class Operations:
         cursor: str | None = None
         while True:
             page = self.list_alarm_changes(alarm_id, limit=limit, cursor=cursor)
-            yield from self.transport.listed(page)
+            yield from self.transport.listed(page, f"/api/v1/alarms/{segment(alarm_id)}/changes")
             cursor = page.get("next_cursor")
             if cursor is None:
                 return
@@ -2102,7 +2102,7 @@ class Operations:
         cursor: str | None = None
         while True:
             page = self.list_event_reports(motor=motor, limit=limit, cursor=cursor)
-            yield from self.transport.listed(page)
+            yield from self.transport.listed(page, "/api/v1/event-reports")
             cursor = page.get("next_cursor")
             if cursor is None:
                 return
@@ -2215,7 +2215,7 @@ class Operations:
             page = self.list_recordings(
                 motor=motor, state=state, operation=operation, limit=limit, cursor=cursor
             )
-            yield from self.transport.listed(page)
+            yield from self.transport.listed(page, "/api/v1/recordings")
             cursor = page.get("next_cursor")
             if cursor is None:
                 return
@@ -2615,7 +2615,7 @@ class Operations:
         cursor: str | None = None
         while True:
             page = self.list_diagnoses(recording_id, limit=limit, cursor=cursor)
-            yield from self.transport.listed(page)
+            yield from self.transport.listed(page, f"/api/v1/recordings/{segment(recording_id)}/diagnoses")
             cursor = page.get("next_cursor")
             if cursor is None:
                 return
@@ -2718,7 +2718,7 @@ class Operations:
         cursor: str | None = None
         while True:
             page = self.list_deletions(motor=motor, limit=limit, cursor=cursor)
-            yield from self.transport.listed(page)
+            yield from self.transport.listed(page, "/api/v1/deletions")
             cursor = page.get("next_cursor")
             if cursor is None:
                 return
@@ -3095,7 +3095,7 @@ class Operations:
             page = self.list_notifications(
                 state=state, channel=channel, alarm=alarm, limit=limit, cursor=cursor
             )
-            yield from self.transport.listed(page)
+            yield from self.transport.listed(page, "/api/v1/notifications")
             cursor = page.get("next_cursor")
             if cursor is None:
                 return
@@ -3287,7 +3287,7 @@ class Operations:
             page = self.list_audit_entries(
                 actor=actor, action=action, subject=subject, from_=from_, to=to, limit=limit, cursor=cursor
             )
-            yield from self.transport.listed(page)
+            yield from self.transport.listed(page, "/api/v1/audit/entries")
             cursor = page.get("next_cursor")
             if cursor is None:
                 return
@@ -3411,7 +3411,7 @@ class Operations:
         cursor: str | None = None
         while True:
             page = self.list_backups(limit=limit, cursor=cursor)
-            yield from self.transport.listed(page)
+            yield from self.transport.listed(page, "/api/v1/backups")
             cursor = page.get("next_cursor")
             if cursor is None:
                 return
@@ -3539,7 +3539,7 @@ class Operations:
         cursor: str | None = None
         while True:
             page = self.list_own_tokens(limit=limit, cursor=cursor)
-            yield from self.transport.listed(page)
+            yield from self.transport.listed(page, "/api/v1/account/tokens")
             cursor = page.get("next_cursor")
             if cursor is None:
                 return
@@ -3629,7 +3629,7 @@ class Operations:
         cursor: str | None = None
         while True:
             page = self.list_tokens(limit=limit, cursor=cursor)
-            yield from self.transport.listed(page)
+            yield from self.transport.listed(page, "/api/v1/tokens")
             cursor = page.get("next_cursor")
             if cursor is None:
                 return
@@ -3722,7 +3722,7 @@ class Operations:
         cursor: str | None = None
         while True:
             page = self.list_users(limit=limit, cursor=cursor)
-            yield from self.transport.listed(page)
+            yield from self.transport.listed(page, "/api/v1/users")
             cursor = page.get("next_cursor")
             if cursor is None:
                 return

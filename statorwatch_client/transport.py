@@ -156,11 +156,11 @@ class Transport:
             return response
         raise ServiceError(_problem(response), status=response.status_code)
 
-    def listed(self, page: Mapping[str, Any]) -> list[Any]:
+    def listed(self, page: Mapping[str, Any], path: str) -> list[Any]:
         """Return the items of a page. Raises ServiceError where it is none: another service answers."""
         items = page.get("items")
         if not isinstance(items, list) or not all(isinstance(item, dict) for item in items):
-            raise ServiceError(f"{self.url}: expected a list of items")
+            raise ServiceError(f"{self.url}{path}: expected a list of items")
         return items
 
     def save(self, path: str, sink: BinaryIO, *, query: Query | None = None) -> int:

@@ -106,7 +106,7 @@ def _methods(verb: str, path: str, operation: Json) -> Iterator[str]:
         )
         page = PAGE.search(schema["$ref"])
         if page and any(argument.name == "cursor" for argument in arguments):
-            yield _iterator(name, arguments, f"models.{page[1]}", told)
+            yield _iterator(name, arguments, f"models.{page[1]}", told, call.split(", ")[0])
     elif not kinds:
         yield _method(name, arguments, "None", told, f'self.transport.document("{verb}", {call})', None)
     elif kinds == {"application/jsonl"}:
@@ -126,7 +126,7 @@ def _several(verb: str, call: str, model: str) -> str:
     )
 
 
-def _iterator(name: str, arguments: list[Argument], item: str, told: str) -> str:
+def _iterator(name: str, arguments: list[Argument], item: str, told: str, address: str) -> str:
     following = [argument for argument in arguments if argument.name != "cursor"]
     given = ", ".join(
         argument.name if argument.place == "path" else f"{argument.name}={argument.name}"
@@ -136,7 +136,7 @@ def _iterator(name: str, arguments: list[Argument], item: str, told: str) -> str
         "cursor: str | None = None\n"
         "while True:\n"
         f"    page = self.{name}({given + ', ' if given else ''}cursor=cursor)\n"
-        "    yield from self.transport.listed(page)\n"
+        f"    yield from self.transport.listed(page, {address})\n"
         '    cursor = page.get("next_cursor")\n'
         "    if cursor is None:\n"
         "        return"
