@@ -1,4 +1,4 @@
-# make install | demo | test | test-all | coverage | lint | docs | client | bench | fuzz SECONDS=60 | interop [LIBIEC61850=TREE]    (PYTHON=python3.11 make install: another interpreter)
+# make install | demo | test | test-all | coverage | lint | bench | fuzz SECONDS=60 | interop [LIBIEC61850=TREE]    (PYTHON=python3.11 make install: another interpreter)
 # make chaos SEED=1 MINUTES=2 RECORDINGS=300 RELAYS=12 [FAULTS=1] [DATABASE=postgresql] [JSON=FILE] [DATA=DIR]     (faults of all kinds: docs/evidence/track-record.md)
 # make bench [QUICK=1] [DATA=FOLDER]     (DATA: measured recordings, for docs/evidence/condition.md)
 # make corpus DIR=FOLDER     (how recordings and SCL files of a folder are read: docs/evidence/corpus.md)
@@ -14,7 +14,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 # docker compose where its engine answers, else nothing; COMPOSE="podman-compose" make compose-test: another one
 COMPOSE ?= $(shell docker compose version >/dev/null 2>&1 && docker info >/dev/null 2>&1 && echo docker compose)
 
-.PHONY: install demo test test-all coverage hostile chaos compose-test compose-test-hosts lint client docs bench corpus interop fuzz lock clean
+.PHONY: install demo test test-all coverage hostile chaos compose-test compose-test-hosts lint docs bench corpus interop fuzz lock clean
 .DEFAULT_GOAL := install
 
 install: $(WARM)
@@ -79,10 +79,6 @@ lint: install
 	$(BIN)/lint-imports
 	$(BIN)/check-jsonschema --builtin-schema vendor.compose-spec docker-compose.yml examples/several-hosts.yml
 	$(BIN)/check-jsonschema --builtin-schema vendor.github-workflows .github/workflows/ci.yml
-
-# The typed client of the API, from the API's own description.
-client: install
-	$(BIN)/python -m testing.api_client
 
 # What pages have from the code: the drawings of the architecture, the commands and their options.
 docs: install

@@ -77,7 +77,6 @@ def create_app(
         openapi_url=None,  # FastAPI would write the document anew at each request; see _complete_document
         docs_url=None,  # its page would run a script from the internet, with the rights of this API
         redoc_url=None,
-        generate_unique_id_function=lambda route: route.name,  # a method of statorwatch_client
     )
     app.state.context = context
     api = APIRouter(dependencies=[Depends(refuse_unknown_parameters)])

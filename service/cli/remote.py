@@ -7,7 +7,7 @@ from rich.text import Text
 
 from core.error_words import one_line
 from service.cli.output import CommandError, failing_clearly, print_document, progress, results
-from service.client.rest_client import Document, ServiceClient, ServiceError
+from service.client.rest_client import Document, ServiceClient, ServiceError, segment
 from service.client.verdicts import level, load, percent, reasons_of, verdict_text
 
 ENDED = ("diagnosed", "failed")
@@ -43,7 +43,7 @@ def trigger_motor(
     Raises CommandError.
     """
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        request: Document = service.request_recording(motor, idempotency_key=key, seconds=seconds)
+        request = service.request_recording(motor, idempotency_key=key, seconds=seconds)
         _warn_of_a_link_that_is_down(service, motor)
         deadline_s = time.monotonic() + wait_s
         state = request["state"]
@@ -58,7 +58,7 @@ def trigger_motor(
             request = _joined(service, request, deadline_s)
         if state == "diagnosed":
             made = request["joined_recording_id"] or request["recording_id"]
-            recording = service.api.get_recording(str(made))
+            recording = service.get(f"/recordings/{segment(str(made))}")
             request = {**request, "diagnosis": recording["diagnosis"]}
     if state == "failed":
         raise CommandError(f"{motor}: {request['reason']}", details={"event_report": dict(request)})
@@ -89,7 +89,7 @@ def _joined(service: ServiceClient, request: Document, deadline_s: float) -> Doc
         if joined is None and request["joined_remark"] is not None:
             break
         if joined is not None:
-            found = service.api.get_recording(str(joined))
+            found = service.get(f"/recordings/{segment(str(joined))}")
             if found["state"] in JOINED_ENDED:
                 break
         time.sleep(POLL_PERIOD_S)
@@ -102,9 +102,9 @@ def _joined(service: ServiceClient, request: Document, deadline_s: float) -> Doc
 def release_relay(url: str, relay: str, *, as_json: bool) -> None:
     """End the quarantine of a relay. Raises CommandError."""
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        before = service.api.get_ied(relay)
+        before = service.get(f"/ieds/{segment(relay)}")
         service.release(relay)
-        found = service.api.get_ied(relay)
+        found = service.get(f"/ieds/{segment(relay)}")
     if as_json:
         print_document(found)
         return
@@ -126,7 +126,7 @@ def delete_recording(url: str, recording_id: str, reason: str, *, as_json: bool)
 
 
 def _health(service: ServiceClient, motor: str) -> Document:
-    return service.api.get_health(motor)
+    return service.get(f"/motors/{segment(motor)}/health")
 
 
 def _warn_of_a_link_that_is_down(service: ServiceClient, motor: str) -> None:

@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
-from service.client.rest_client import Document, ServiceClient, ServiceError
+from service.client.rest_client import Document, ServiceClient, ServiceError, segment
 from service.demo.results import DemoDiagnosis, DemoMotor
 
 LIMIT_S = 40.0
@@ -57,7 +57,7 @@ def _ended(service: ServiceClient, request: Document, *, late: bool) -> DemoDiag
     """The result of a recording request; None while it is under way."""
     state = request["state"]
     if state == "diagnosed":
-        recording = service.api.get_recording(str(request["recording_id"]))
+        recording = service.get(f"/recordings/{segment(str(request['recording_id']))}")
         diagnosis = recording["diagnosis"]
         if not isinstance(diagnosis, dict):
             raise ServiceError(f"recording {request['recording_id']} is diagnosed and has no diagnosis")

@@ -13,7 +13,7 @@ import grimp
 from tests.docs.pages import ROOT, between_markers
 
 PAGE = ROOT / "docs" / "explanation" / "architecture.md"
-PACKAGES = ("core", "scl", "mms", "ied_sim", "statorwatch_client", "service")
+PACKAGES = ("core", "scl", "mms", "ied_sim", "service")
 
 Arrows = frozenset[tuple[str, str]]
 
@@ -27,7 +27,7 @@ class Drawing:
 
 
 DRAWINGS = {
-    "house": Drawing("service", beside=("ied_sim", "statorwatch_client", "core", "scl", "mms")),
+    "house": Drawing("service", beside=("ied_sim", "core", "scl", "mms")),
     "collector": Drawing("service.collector"),
     "core": Drawing("core"),
     "mms": Drawing("mms"),

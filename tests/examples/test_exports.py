@@ -63,18 +63,6 @@ def test_python_reads_them(client: httpx.Client, tmp_path: Path) -> None:
     ]
 
 
-def test_python_follows_a_motor_with_types(client: httpx.Client, tmp_path: Path) -> None:
-    token = tmp_path / "statorwatch.token"
-    token.write_text(f"{token_of(client)}\n")
-    example = ROOT / "examples/follow_a_motor.py"
-    words = [sys.executable, str(example), str(client.base_url), "PUMP-A1", str(token)]
-    done = subprocess.run(words, capture_output=True, text=True, check=True)
-    assert done.stdout.splitlines() == [
-        "2025-10-09T08:53:20Z\t0.02\tfault",
-        "2025-10-09T09:53:20Z\tNone\tundiagnosable",
-    ]
-
-
 def test_a_workbook_with_queries(client: httpx.Client, tmp_path: Path) -> None:
     """As far as it can be seen without Excel: its parts belong together, and the queries are in them."""
     path = tmp_path / "motors.xlsx"

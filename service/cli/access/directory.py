@@ -3,14 +3,12 @@
 The database is for who owns its files: they manage users without being one, which makes the first user.
 """
 
-from __future__ import annotations
-
 import getpass
 import time
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol, cast
+from typing import Protocol
 
 from sqlalchemy.exc import SQLAlchemyError
 
@@ -20,14 +18,11 @@ from service.access.passwords import PASSWORD_RULE, hashed, is_usable
 from service.access.user_names import NAME_RULE, name_of
 from service.api.access.schemas import Token, User
 from service.cli.output import CommandError, failing_clearly
-from service.client.rest_client import Document, ServiceClient, ServiceError
+from service.client.rest_client import Document, ServiceClient, ServiceError, segment
 from service.configuration.settings import Settings, SettingsError
 from service.storage import Repository, StorageError, connect, migrate
 from service.storage.records import Actor, Role
 from service.storage.records import User as StoredUser
-
-if TYPE_CHECKING:
-    from statorwatch_client import models
 
 AT_ONCE = 1000
 
@@ -106,55 +101,50 @@ class _AtService:
         self._service = service
 
     def users(self) -> list[Document]:
-        return list(self._service.api.iter_users())
+        return list(self._service.items("/users"))
 
     def add_user(
         self, name: str, roles: Collection[Role], full_name: str | None, password: str | None
     ) -> Document:
-        wanted: models.UserRequest = {
-            "name": name,
-            "roles": [cast("models.Role", str(role)) for role in sorted(roles)],
-            "full_name": full_name,
-            "password": password,
-        }
-        return self._service.api.add_user(document=wanted)
+        wanted = {"name": name, "roles": sorted(roles), "full_name": full_name, "password": password}
+        return self._service.send("POST", "/users", wanted)
 
     def change_user(self, name: str, change: Mapping[str, object]) -> Document:
-        return self._service.api.change_user(name, document=cast("models.UserChange", change))
+        return self._service.send("PATCH", f"/users/{segment(name)}", change)
 
     def set_password(self, name: str, password: str) -> None:
-        self._service.api.set_password(name, document={"password": password})
+        self._service.send("PUT", f"/users/{segment(name)}/password", {"password": password})
 
     def unlock(self, name: str) -> None:
-        self._service.api.unlock_user(name)
+        self._service.send("DELETE", f"/users/{segment(name)}/lock")
 
     def end_sessions(self, name: str) -> None:
-        self._service.api.end_sessions(name)
+        self._service.send("DELETE", f"/users/{segment(name)}/sessions")
 
     def delete_user(self, name: str) -> None:
-        self._service.api.delete_user(name)
+        self._service.send("DELETE", f"/users/{segment(name)}")
 
     def tokens(self) -> list[Document]:
-        api = self._service.api
-        return list(api.iter_tokens() if self._manages() else api.iter_own_tokens())
+        return list(self._service.items("/tokens" if self._manages() else "/account/tokens"))
 
     def add_token(
         self, user: str | None, label: str, scope: Collection[str] | None, expires_time: str | None
     ) -> Document:
-        wanted: models.TokenRequest = {
+        path = "/account/tokens" if user is None else f"/users/{segment(user)}/tokens"
+        wanted = {
             "label": label,
-            "scope": None if scope is None else [cast("models.Permission", each) for each in sorted(scope)],
+            "scope": None if scope is None else sorted(scope),
             "expires_time": expires_time,
         }
-        api = self._service.api
-        return api.add_own_token(document=wanted) if user is None else api.add_token(user, document=wanted)
+        return self._service.send("POST", path, wanted)
 
     def revoke_token(self, token_id: str) -> None:
-        api = self._service.api
-        (api.revoke_token if self._manages() else api.revoke_own_token)(token_id)
+        path = "/tokens" if self._manages() else "/account/tokens"
+        self._service.send("DELETE", f"{path}/{segment(token_id)}")
 
     def _manages(self) -> bool:
-        return "users" in self._service.api.get_account()["permissions"]
+        permissions = self._service.get("/account").get("permissions")
+        return isinstance(permissions, list) and "users" in permissions
 
 
 class _InDatabase:

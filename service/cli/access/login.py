@@ -33,7 +33,7 @@ def log_out(url: str, *, as_json: bool) -> None:
     with failing_clearly(ServiceError, CredentialsError):
         try:
             with ServiceClient(url) as service:
-                service.api.log_out()
+                service.send("POST", "/logout")
         except ServiceError as error:
             if error.status is None:
                 print_warning(f"the session is forgotten here, and may go on there: {error}")
@@ -47,7 +47,7 @@ def log_out(url: str, *, as_json: bool) -> None:
 def show_account(url: str, *, as_json: bool) -> None:
     """Print who asks, and what they may do. Raises CommandError."""
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        account = service.api.get_account()
+        account = service.get("/account")
     if as_json:
         print_document(account)
         return
@@ -63,7 +63,7 @@ def change_password(url: str, *, old_file: str | None, new_file: str | None, as_
     new = given_password(new_file, "new password", again=True)
     with failing_clearly(ServiceError, CredentialsError):
         with ServiceClient(url) as service:
-            service.api.change_password(document={"old": old, "new": new})
+            service.send("PUT", "/account/password", {"old": old, "new": new})
         forget(url)
     if as_json:
         print_document({})

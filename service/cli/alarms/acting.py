@@ -1,12 +1,9 @@
 """`mcc alarms acknowledge`, `shelve`, `unshelve`, `out-of-service`, `back-in-service`."""
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
-from typing import TYPE_CHECKING
 
 from rich.text import Text
 
@@ -23,9 +20,6 @@ from service.cli.output import (
     results,
 )
 from service.client.rest_client import Document, ServiceClient, ServiceError
-
-if TYPE_CHECKING:
-    from statorwatch_client import models
 
 AT_ONCE = 100
 """So many alarms are acknowledged in one request."""
@@ -127,11 +121,11 @@ def _print(alarm: Document, *, as_json: bool) -> None:
 
 def _of_motor(service: ServiceClient, motor: str) -> list[str]:
     """Return the ids of a motor's alarms that somebody has to take notice of. Raises ServiceError."""
-    waiting: tuple[models.AlarmState, ...] = ("unacknowledged", "returned-unacknowledged")
+    waiting = ("unacknowledged", "returned-unacknowledged")
     return [
         str(alarm["id"])
         for state in waiting
-        for alarm in service.api.iter_open_alarms(limit=1000, motor=motor, state=state)
+        for alarm in service.items("/alarms/open", limit="1000", motor=motor, state=state)
     ]
 
 

@@ -15,7 +15,7 @@ from service.client.verdicts import to_the_second
 def show_figures(url: str, *, days: int, as_json: bool) -> None:
     """Print the key figures of the alarms. Raises CommandError."""
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        figures = service.api.get_alarm_figures(days=days)
+        figures = service.get("/alarms/figures", days=str(days))
     if as_json:
         print_document(figures)
         return
@@ -26,11 +26,11 @@ def show_figures(url: str, *, days: int, as_json: bool) -> None:
         console.print(Text("open: " + ", ".join(f"{number} {state}" for state, number in states.items())))
     busy = [day for day in _documents(figures["days"]) if day["calls"]]
     _print_table("alarms of each day with any", ("day", "alarms"), [[d["date"], d["calls"]] for d in busy])
-    for title, told in (
-        ("most frequent", figures["frequent"]),
-        ("chattering: three times within an hour, so often", figures["chattering"]),
+    for title, key in (
+        ("most frequent", "frequent"),
+        ("chattering: three times within an hour, so often", "chattering"),
     ):
-        rows = [[one["calls"], _where(one), one["kind"], one["subject"]] for one in _documents(told)]
+        rows = [[one["calls"], _where(one), one["kind"], one["subject"]] for one in _documents(figures[key])]
         _print_table(title, ("calls", "where", "what", "subject"), rows)
     long = [
         [to_the_second(one["raised_time"]), _where(one), one["kind"], one["state"], one["id"]]

@@ -11,7 +11,7 @@ from core.error_words import one_line
 from service.cli.alarms.choosing import whole_id
 from service.cli.output import WRONG_USE, CommandError, failing_clearly, print_document, results
 from service.cli.rows import print_rows, require_one_format
-from service.client.rest_client import Document, ServiceClient, ServiceError
+from service.client.rest_client import Document, ServiceClient, ServiceError, segment
 from service.client.verdicts import percent, to_the_second
 
 FIELDS = (
@@ -75,9 +75,9 @@ def show_alarms(url: str, chosen: Chosen, *, limit: int, as_csv: bool, as_json: 
 def show_alarm(url: str, alarm_id: str, *, as_json: bool) -> None:
     """Print one alarm and what happened to it, the latest at the top. Raises CommandError."""
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        whole = whole_id(service, alarm_id)
-        alarm = service.api.get_alarm(whole)
-        changes = list(islice(service.api.iter_alarm_changes(whole, limit=1000), MOST_CHANGES))
+        path = f"/alarms/{segment(whole_id(service, alarm_id))}"
+        alarm = service.get(path)
+        changes = list(islice(service.items(f"{path}/changes", limit="1000"), MOST_CHANGES))
     if as_json:
         print_document({**alarm, "changes": changes})
         return

@@ -64,12 +64,12 @@ def _of_database(config: Path, first: int) -> Iterator[Trail]:
 
 
 def _of_service(service: ServiceClient, first: int) -> Trail:
-    found = service.api.get_audit_head()
+    found = service.get("/audit/head")
     head = Anchor(int(str(found["number"])), str(found["hash"]))
 
     def read() -> Iterator[AuditEntry]:
         if head.number >= first:
-            for text in service.api.export_audit_trail(first=first, last=head.number):
+            for text in service.lines("/audit/export", first=str(first), last=str(head.number)):
                 yield entry_of_line(text)
 
     return Trail(read, START, head)

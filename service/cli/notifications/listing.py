@@ -1,10 +1,7 @@
 """`mcc notify list`, `channels`, `retry`."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from itertools import islice
-from typing import TYPE_CHECKING, cast
 
 from rich.text import Text
 
@@ -14,9 +11,6 @@ from service.cli.rows import Column, print_rows
 from service.client.rest_client import Document, ServiceClient, ServiceError
 from service.client.verdicts import to_the_second
 
-if TYPE_CHECKING:
-    from statorwatch_client import models
-
 STATE_COLOURS = {"sent": "green", "dead": "red", "queued": "yellow", "sending": "yellow"}
 
 
@@ -24,14 +18,10 @@ def list_notifications(
     url: str, *, state: str | None, channel: str | None, alarm: str | None, limit: int, as_json: bool
 ) -> None:
     """Print messages, latest first, and why those were not sent that were not. Raises CommandError."""
+    given = {"state": state, "channel": channel, "alarm": alarm}
+    chosen = {name: word for name, word in given.items() if word is not None}
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        messages = service.api.iter_notifications(
-            state=cast("models.NotificationState | None", state),
-            channel=channel,
-            alarm=alarm,
-            limit=min(limit, 1000),
-        )
-        found = list(islice(messages, limit))
+        found = list(islice(service.items("/notifications", limit=str(min(limit, 1000)), **chosen), limit))
     if as_json:
         print_document({"notifications": found})
         return
@@ -52,7 +42,7 @@ def list_notifications(
 def list_channels(url: str, *, as_json: bool) -> None:
     """Print the channels of the settings, and what waits for them. Raises CommandError."""
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        found = list(service.api.list_channels()["items"])
+        found = list(service.items("/notification-channels"))
     if as_json:
         print_document({"channels": found})
         return
@@ -76,7 +66,7 @@ def retry_notifications(url: str, ids: Sequence[str], *, every: bool, as_json: b
         )
     with failing_clearly(ServiceError), ServiceClient(url) as service:
         if every:
-            ids = [str(one["id"]) for one in service.api.iter_notifications(state="dead", limit=1000)]
+            ids = [str(one["id"]) for one in service.items("/notifications", state="dead", limit="1000")]
         retried = [service.retry_notification(one) for one in ids]
     if as_json:
         print_document({"notifications": retried})

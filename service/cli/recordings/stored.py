@@ -1,10 +1,7 @@
 """`mcc recordings`: what recordings the service has, and how one leaves it."""
 
-from __future__ import annotations
-
 from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING, cast
 
 from rich.text import Text
 
@@ -13,9 +10,6 @@ from service.cli.output import failing_clearly, print_document, results
 from service.cli.rows import Column, print_rows, require_one_format
 from service.client.rest_client import Document, ServiceClient, ServiceError
 from service.client.verdicts import to_the_second, verdict_text
-
-if TYPE_CHECKING:
-    from statorwatch_client import models
 
 FIELDS = (
     "recorded_time", "motor", "ied", "source", "name", "state", "operation", "operation_remark", "verdict",
@@ -36,14 +30,10 @@ def show_recordings(
 ) -> None:
     """Print recordings, latest first. Raises CommandError."""
     require_one_format(as_csv=as_csv, as_json=as_json)
+    filters = (("motor", motor), ("state", state), ("operation", operation))
+    chosen = {name: word for name, word in filters if word is not None}
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        recordings = service.api.iter_recordings(
-            motor=motor,
-            state=cast("models.RecordingState | None", state),
-            operation=cast("models.Operation | None", operation),
-            limit=min(limit, 1000),
-        )
-        found = list(islice(recordings, limit))
+        found = list(islice(service.items("/recordings", limit=str(min(limit, 1000)), **chosen), limit))
     columns: dict[str, Column] = {
         "recorded": lambda one: to_the_second(one["recorded_time"] or one["announced_time"]),
         "motor": lambda one: str(one["motor"]),

@@ -9,7 +9,7 @@ from rich.text import Text
 from core.error_words import one_line
 from service.cli.output import CommandError, failing_clearly, print_document, results
 from service.cli.remote import verdict_line, what_next
-from service.client.rest_client import Document, ServiceClient, ServiceError
+from service.client.rest_client import Document, ServiceClient, ServiceError, segment
 
 REFUSED = ("rejected", "failed")
 ENDED = ("diagnosed", *REFUSED)
@@ -29,7 +29,7 @@ def upload_recording(url: str, motor: str, files: Sequence[Path], *, wait_s: flo
         deadline_s = time.monotonic() + wait_s
         while recording["state"] not in ENDED and time.monotonic() < deadline_s:
             time.sleep(POLL_PERIOD_S)
-            recording = service.api.get_recording(str(recording["id"]))
+            recording = service.get(f"/recordings/{segment(str(recording['id']))}")
     name = f"{motor}: recording {recording['name']} ({recording['id']})"
     if wait_s:
         _require_verdict(name, recording, wait_s)

@@ -1,1 +1,0 @@
-"""Makes the typed client `statorwatch_client` from the service's OpenAPI document."""
