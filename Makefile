@@ -14,7 +14,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 # docker compose where its engine answers, else nothing; COMPOSE="podman-compose" make compose-test: another one
 COMPOSE ?= $(shell docker compose version >/dev/null 2>&1 && docker info >/dev/null 2>&1 && echo docker compose)
 
-.PHONY: install demo test test-all coverage hostile chaos compose-test compose-test-hosts lint docs bench corpus interop fuzz lock clean
+.PHONY: install demo test test-all coverage hostile chaos compose-test compose-test-hosts lint docs client bench corpus interop fuzz lock clean
 .DEFAULT_GOAL := install
 
 install: $(WARM)
@@ -83,6 +83,10 @@ lint: install
 # What pages have from the code: the drawings of the architecture, the commands and their options.
 docs: install
 	$(BIN)/python -m tests.docs
+
+# What the client package has from the OpenAPI document: its types and functions.
+client: install
+	$(BIN)/python -m tests.client
 
 # The second one ends with 1 where a command answers too slowly, the third one where a page does: it needs 14 GB for five
 # million records. The last one writes docs/evidence/condition.md, in the better part of an hour; with QUICK=1 it prints

@@ -181,7 +181,7 @@ def _note_delays(client: ServiceClient, files: Path, seen: Seen) -> None:
 
 def _open(client: ServiceClient, seen: Seen) -> list[str]:
     """Return the recording requests that have no recording yet."""
-    return [each for each in seen.asked if client.recording_request(each)["state"] in UNDER_WAY]
+    return [each for each in seen.asked if client.get_event_report(each)["state"] in UNDER_WAY]
 
 
 def _told(seen: Seen, minutes: float, spent_s: float, simulated_s: float) -> Iterator[str]:
@@ -203,7 +203,7 @@ def _told(seen: Seen, minutes: float, spent_s: float, simulated_s: float) -> Ite
 
 
 def _outcome(client: ServiceClient, seen: Seen) -> Iterator[str]:
-    states = Counter(str(client.recording_request(each)["state"]) for each in seen.asked)
+    states = Counter(str(client.get_event_report(each)["state"]) for each in seen.asked)
     if states:
         told = ", ".join(f"{number} {state}" for state, number in states.items())
         yield f"recording requests: {len(seen.asked)} asked, {told}"

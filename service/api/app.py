@@ -77,6 +77,7 @@ def create_app(
         openapi_url=None,  # FastAPI would write the document anew at each request; see _complete_document
         docs_url=None,  # its page would run a script from the internet, with the rights of this API
         redoc_url=None,
+        generate_unique_id_function=_operation_id,
     )
     app.state.context = context
     api = APIRouter(dependencies=[Depends(refuse_unknown_parameters)])
@@ -138,6 +139,11 @@ def create_app(
     limits = dict.fromkeys(uploads, max_upload_bytes) | dict.fromkeys(texts, MAX_REPORT_BYTES)
     _complete_document(app, limits)
     return app
+
+
+def _operation_id(route: APIRoute) -> str:
+    """Return what clients that are made from the document call the route."""
+    return route.name
 
 
 def _add_sign_on(api: APIRouter, settings: OidcSettings) -> None:

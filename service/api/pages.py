@@ -3,7 +3,7 @@
 import base64
 import json
 from collections.abc import Callable
-from typing import Annotated, Generic, TypeVar
+from typing import Annotated, Any, Generic, TypeVar
 
 from fastapi import Query
 from pydantic import BaseModel, Field
@@ -30,6 +30,11 @@ class Page(BaseModel, Generic[Item]):
 
     items: Annotated[list[Item], Field(max_length=LONGEST_LIST)]
     next_cursor: str | None
+
+    @classmethod
+    def model_parametrized_name(cls, params: tuple[Any, ...]) -> str:
+        """Return the name of the pages of one list in the OpenAPI document: AlarmPage."""
+        return "".join(param.__name__ for param in params) + cls.__name__
 
 
 def page(stored: StoredPage[Stored], to_item: Callable[[Stored], Item]) -> Page[Item]:

@@ -7,7 +7,7 @@ from rich.box import SIMPLE_HEAD
 
 from core.quantity_text import plain
 from service.cli.output import facts_table, failing_clearly, print_document, results
-from service.client.rest_client import ServiceClient, ServiceError, segment
+from service.client.rest_client import ServiceClient, ServiceError
 from service.client.tables import FittedTable
 
 NOT_TOLD = "-"
@@ -16,7 +16,7 @@ NOT_TOLD = "-"
 def show_drift(url: str, motor: str, *, as_json: bool) -> None:
     """Print a motor's parameters, their changes, and what may have made them drift. Raises CommandError."""
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        found = service.get(f"/motors/{segment(motor)}/parameters")
+        found = service.get_tracked_parameters(motor)
     if as_json:
         print_document(found)
         return

@@ -7,7 +7,7 @@ from rich.box import SIMPLE_HEAD
 
 from core.quantity_text import plain
 from service.cli.output import facts_table, failing_clearly, print_document, results
-from service.client.rest_client import ServiceClient, ServiceError, segment
+from service.client.rest_client import ServiceClient, ServiceError
 from service.client.tables import FittedTable
 
 NOT_TOLD = "-"
@@ -16,7 +16,7 @@ NOT_TOLD = "-"
 def show_load(url: str, motor: str, *, days: int, as_json: bool) -> None:
     """Print a motor's load profile, hours beyond limits, and how hot it is. Raises CommandError."""
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        load = service.get(f"/motors/{segment(motor)}/load-profile", days=str(days))
+        load = service.get_load_profile(motor, days=days)
     if as_json:
         print_document(load)
         return

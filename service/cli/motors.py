@@ -12,7 +12,7 @@ from core.machines.typical import COMMISSION
 from service.cli.output import facts_table, failing_clearly, print_document, results
 from service.client.classification import answer_rows
 from service.client.conditions import as_of, condition_lines, condition_of, since_day, state_text
-from service.client.rest_client import Document, ServiceClient, ServiceError, segment
+from service.client.rest_client import Document, ServiceClient, ServiceError
 from service.client.rotor_conditions import rotor_lines, rotor_of
 from service.client.tables import FittedTable
 from service.client.verdicts import (
@@ -35,7 +35,7 @@ NO_RECORDING = "no recording yet"
 def list_motors(url: str, *, as_json: bool) -> None:
     """Print one line for each motor of the plant: its condition. Raises CommandError."""
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        motors = list(service.items("/motors", health="true", limit="1000"))
+        motors = list(service.list_motors(health=True, limit=1000))
         healths = [_listed_health(motor) for motor in motors]
         table = motors_table(healths)
     if as_json:
@@ -50,8 +50,8 @@ def list_motors(url: str, *, as_json: bool) -> None:
 def show_health(url: str, motor: str, *, as_json: bool) -> None:
     """Print a motor's condition: what to do and why, its rotor, its latest recording. Raises CommandError."""
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        health = service.get(f"/motors/{segment(motor)}/health")
-        answer = service.get(f"/motors/{segment(motor)}/classification")
+        health = service.get_health(motor)
+        answer = service.get_classification(motor)
         lines = condition_lines(condition_of(health))
         rotor = rotor_of(service, motor)
         told = [(name, Text(one_line(words))) for name, words in answer_rows(answer)]

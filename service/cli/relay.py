@@ -7,7 +7,7 @@ from rich.text import Text
 from core.error_words import one_line
 from core.quantity_text import plain
 from service.cli.output import failing_clearly, print_document, results
-from service.client.rest_client import Document, ServiceClient, ServiceError, segment
+from service.client.rest_client import Document, ServiceClient, ServiceError
 from service.client.tables import FittedTable
 
 _USED = (
@@ -27,7 +27,7 @@ NONE = "none"
 def show_relay(url: str, relay: str, *, as_json: bool) -> None:
     """Print what is used of a relay, what differs from its SCL, what is ignored. Raises CommandError."""
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        ied = service.get(f"/ieds/{segment(relay)}")
+        ied = service.get_ied(relay)
     if as_json:
         print_document(ied)
         return

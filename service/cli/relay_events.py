@@ -4,7 +4,7 @@ from itertools import islice
 
 from service.cli.output import failing_clearly
 from service.cli.rows import Column, print_rows, require_one_format
-from service.client.rest_client import ServiceClient, ServiceError, segment
+from service.client.rest_client import ServiceClient, ServiceError
 from service.client.verdicts import to_the_second
 
 FIELDS = ("time", "kind")
@@ -14,7 +14,7 @@ def show_relay_events(url: str, motor: str, *, limit: int, as_csv: bool, as_json
     """Print the latest events of a motor, oldest first. Raises CommandError."""
     require_one_format(as_csv=as_csv, as_json=as_json)
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        found = service.items(f"/motors/{segment(motor)}/relay-events", limit=str(min(limit, 1000)))
+        found = service.list_relay_events(motor, limit=min(limit, 1000))
         events = list(islice(found, limit))[::-1]
     columns: dict[str, Column] = {
         "time": lambda one: to_the_second(one["time"]),

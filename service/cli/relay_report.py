@@ -25,9 +25,9 @@ def import_report(
     """Give a text report of a relay to the service. Raises CommandError."""
     if not file.is_file():
         raise CommandError(f"{file}: expected a file", details={"type": "FileNotFound"})
-    query = {"date_order": date_order} | ({} if power_unit is None else {"power_unit": power_unit})
+    query: dict[str, Any] = {"date_order": date_order, "power_unit": power_unit}
     with failing_clearly(ServiceError, OSError), ServiceClient(url) as service:
-        found = service.import_report(motor, file.read_bytes(), query)
+        found = service.import_report(motor, file.read_bytes(), **query)
     if as_json:
         print_document(found)
         return

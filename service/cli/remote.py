@@ -7,7 +7,7 @@ from rich.text import Text
 
 from core.error_words import one_line
 from service.cli.output import CommandError, failing_clearly, print_document, progress, results
-from service.client.rest_client import Document, ServiceClient, ServiceError, segment
+from service.client.rest_client import Document, ServiceClient, ServiceError
 from service.client.verdicts import level, load, percent, reasons_of, verdict_text
 
 ENDED = ("diagnosed", "failed")
@@ -43,13 +43,13 @@ def trigger_motor(
     Raises CommandError.
     """
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        request = service.request_recording(motor, idempotency_key=key, seconds=seconds)
+        request: Document = service.request_recording(motor, idempotency_key=key, seconds=seconds)
         _warn_of_a_link_that_is_down(service, motor)
         deadline_s = time.monotonic() + wait_s
         state = request["state"]
         while state not in ENDED and time.monotonic() < deadline_s:
             time.sleep(POLL_PERIOD_S)
-            request = service.recording_request(str(request["id"]))
+            request = service.get_event_report(str(request["id"]))
             if request["state"] != state:
                 state = request["state"]
                 progress().print(f"{motor}: {state}")
@@ -58,7 +58,7 @@ def trigger_motor(
             request = _joined(service, request, deadline_s)
         if state == "diagnosed":
             made = request["joined_recording_id"] or request["recording_id"]
-            recording = service.get(f"/recordings/{segment(str(made))}")
+            recording = service.get_recording(str(made))
             request = {**request, "diagnosis": recording["diagnosis"]}
     if state == "failed":
         raise CommandError(f"{motor}: {request['reason']}", details={"event_report": dict(request)})
@@ -84,12 +84,12 @@ def trigger_motor(
 def _joined(service: ServiceClient, request: Document, deadline_s: float) -> Document:
     """Return the request once its series was joined and that is diagnosed, or when the time is over."""
     while time.monotonic() < deadline_s:
-        request = service.recording_request(str(request["id"]))
+        request = service.get_event_report(str(request["id"]))
         joined = request["joined_recording_id"]
         if joined is None and request["joined_remark"] is not None:
             break
         if joined is not None:
-            found = service.get(f"/recordings/{segment(str(joined))}")
+            found = service.get_recording(str(joined))
             if found["state"] in JOINED_ENDED:
                 break
         time.sleep(POLL_PERIOD_S)
@@ -102,9 +102,9 @@ def _joined(service: ServiceClient, request: Document, deadline_s: float) -> Doc
 def release_relay(url: str, relay: str, *, as_json: bool) -> None:
     """End the quarantine of a relay. Raises CommandError."""
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        before = service.get(f"/ieds/{segment(relay)}")
-        service.release(relay)
-        found = service.get(f"/ieds/{segment(relay)}")
+        before = service.get_ied(relay)
+        service.release_ied(relay)
+        found = service.get_ied(relay)
     if as_json:
         print_document(found)
         return
@@ -117,7 +117,8 @@ def delete_recording(url: str, recording_id: str, reason: str, *, as_json: bool)
     if not reason.strip():
         raise CommandError("--reason: expected a few words, found none")
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        deletion = service.delete_recording(recording_id, reason)
+        service.delete_recording(recording_id, reason=reason)
+        deletion = service.get_deletion(recording_id)
     if as_json:
         print_document(deletion)
         return
@@ -126,7 +127,7 @@ def delete_recording(url: str, recording_id: str, reason: str, *, as_json: bool)
 
 
 def _health(service: ServiceClient, motor: str) -> Document:
-    return service.get(f"/motors/{segment(motor)}/health")
+    return service.get_health(motor)
 
 
 def _warn_of_a_link_that_is_down(service: ServiceClient, motor: str) -> None:

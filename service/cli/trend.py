@@ -1,7 +1,7 @@
 """`mcc trend`: one figure of a motor for each of its recordings."""
 
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Final
 
 from rich.text import Text
@@ -10,7 +10,7 @@ from core.rotor.finding import RotorState
 from service.cli.output import failing_clearly
 from service.cli.rows import Column, print_rows, require_one_format
 from service.client.conditions import STATE_COLOURS, state_text
-from service.client.rest_client import Document, ServiceClient, ServiceError, segment
+from service.client.rest_client import Document, ServiceClient, ServiceError
 from service.client.rotor_and_supply import STATES
 from service.client.verdicts import interval, load, percent, to_the_second, verdict_text
 
@@ -53,6 +53,15 @@ IN_PERCENT: Final = (
     "mu_f", "condition_level", "change", *SHARES_OF_SUPPLY, *CHANGES, *SHARES_OF_SWINGS,
 )  # fmt: skip
 
+LISTS: Final[Mapping[str, Callable[..., Iterator[Document]]]] = {
+    "trend": ServiceClient.get_trend,
+    "rotor": ServiceClient.list_rotor_trend,
+    "parameters": ServiceClient.list_tracked_trend,
+    "swings": ServiceClient.list_swing_trend,
+    "supply": ServiceClient.list_supply_trend,
+}
+"""How a service is asked for each list of a motor's figures."""
+
 
 def show_trend(
     url: str,
@@ -67,12 +76,12 @@ def show_trend(
 ) -> None:
     """Print the latest points of a trend, oldest first. Raises CommandError."""
     require_one_format(as_csv=as_csv, as_json=as_json)
-    query = {name: time for name, time in (("from", first), ("to", end)) if time is not None}
+    query: dict[str, str | None] = {"from_": first, "to": end}
     part, point_of = _source(quantity)
     if part == "trend":
         query["quantity"] = quantity
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        found = service.items(f"/motors/{segment(motor)}/{part}", limit="1000", **query)
+        found = LISTS[part](service, motor, limit=1000, **query)
         points = [point_of(one) for one in deque(found, maxlen=limit)]
     print_rows(
         "points", points, FIELDS, _columns(quantity), as_csv=as_csv, as_json=as_json, whole=("recording",)
@@ -82,13 +91,13 @@ def show_trend(
 def _source(quantity: str) -> tuple[str, Callable[[Document], Document]]:
     """Return which list of a motor tells a quantity, and what makes a point of its items."""
     if quantity == ROTOR_SEVERITY:
-        return "rotor/trend", _rotor_point
+        return "rotor", _rotor_point
     if quantity in CHANGES:
-        return "parameters/trend", lambda one: _change_point(one, CHANGES[quantity])
+        return "parameters", lambda one: _change_point(one, CHANGES[quantity])
     if quantity in SWINGS:
-        return "swings/trend", lambda one: _swing_point(one, quantity)
+        return "swings", lambda one: _swing_point(one, quantity)
     if quantity in (*SHARES_OF_SUPPLY, *FIGURES_OF_SUPPLY):
-        return "supply/trend", lambda one: {
+        return "supply", lambda one: {
             **_place(one),
             "value": one[quantity],
             "reasons": one["reasons"],

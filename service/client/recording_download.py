@@ -18,7 +18,8 @@ def download_recording(service: ServiceClient, recording_id: str, folder: Path) 
     Raises ServiceError, also for an archive that is none or too large; OSError.
     """
     path = f"/recordings/{recording_id}/file"
-    _name, archive = service.download(recording_id)
+    with service.download_recording(recording_id) as file:
+        archive = file.read()
     try:
         files = _unpacked(archive)
     except (zipfile.BadZipFile, NotImplementedError, RuntimeError) as error:

@@ -4,7 +4,7 @@ from rich.text import Text
 
 from core.rotor.finding import RotorState
 from service.client.conditions import STATE_COLOURS
-from service.client.rest_client import Document, ServiceClient, segment
+from service.client.rest_client import Document, ServiceClient
 from service.client.rotor_and_supply import STATES
 from service.client.verdicts import to_the_second
 
@@ -14,7 +14,7 @@ LOAD_OSCILLATION = "load oscillation"
 
 def rotor_of(service: ServiceClient, motor: str) -> Document:
     """Return the condition of a motor's rotor. Raises ServiceError."""
-    return service.get(f"/motors/{segment(motor)}/rotor")
+    return service.get_rotor(motor)
 
 
 def rotor_text(rotor: Document) -> Text:

@@ -8,7 +8,7 @@ from datetime import UTC, datetime, timedelta
 from math import ceil
 from pathlib import Path
 
-from service.client.rest_client import Document, ServiceClient, segment
+from service.client.rest_client import Document, ServiceClient
 
 BELATED = timedelta(hours=1)
 """A record that is seen so long after its time is of a plant that lives through its past."""
@@ -81,10 +81,10 @@ def began(service: ServiceClient, scenario: Path) -> datetime | None:
     the plant's time is the real one, or no record tells. Raises ServiceError.
     """
     clock = _clock(scenario)
-    for motor in service.items("/motors"):
-        points = service.get(f"/motors/{segment(str(motor['name']))}/trend", limit="1")["items"]
-        if isinstance(points, list) and points:
-            first = service.get(f"/recordings/{segment(str(points[0]['recording_id']))}")
+    for motor in service.list_motors():
+        point = next(service.get_trend(motor["name"], limit=1), None)
+        if point is not None:
+            first = service.get_recording(point["recording_id"])
             recorded, announced = _time(first, "recorded_time"), _time(first, "announced_time")
             if clock is None or announced - recorded <= BELATED:
                 return None

@@ -13,7 +13,7 @@ OpenAlarms = Mapping[str, Sequence[Document]]
 def open_alarms_of(service: ServiceClient) -> OpenAlarms:
     """Return the alarms that are not over, of each motor that has some. Raises ServiceError."""
     found: dict[str, list[Document]] = {}
-    for alarm in service.items("/alarms/open", limit="1000"):
+    for alarm in service.list_open_alarms(limit=1000):
         if isinstance(alarm["motor"], str):
             found.setdefault(alarm["motor"], []).append(alarm)
     return found

@@ -167,7 +167,7 @@ def wait_until_ready(plant: DemoPlant, service: ServiceClient) -> list[str]:
     while True:
         plant.pause(POLL_PERIOD_S)
         if service.is_ready():
-            down = [str(ied["name"]) for ied in service.items("/ieds") if ied["link_state"] != "up"]
+            down = [str(ied["name"]) for ied in service.list_ieds() if ied["link_state"] != "up"]
             if not down or time.monotonic() > deadline_s:
                 return down
         elif time.monotonic() > begun_s + plant.answer_limit_s and not service.answers():

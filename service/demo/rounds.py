@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
-from service.client.rest_client import Document, ServiceClient, ServiceError, segment
+from service.client.rest_client import Document, ServiceClient, ServiceError
 from service.demo.results import DemoDiagnosis, DemoMotor
 
 LIMIT_S = 40.0
@@ -43,7 +43,7 @@ def play_round(
     while under_way:
         pause(POLL_PERIOD_S)
         for one in list(under_way):
-            request = service.recording_request(one.request_id)
+            request = service.get_event_report(one.request_id)
             ended = _ended(service, request, late=time.monotonic() > one.deadline_s)
             steps = len(STATES) if ended else _steps(request)
             advance(steps - one.steps)
@@ -57,7 +57,7 @@ def _ended(service: ServiceClient, request: Document, *, late: bool) -> DemoDiag
     """The result of a recording request; None while it is under way."""
     state = request["state"]
     if state == "diagnosed":
-        recording = service.get(f"/recordings/{segment(str(request['recording_id']))}")
+        recording = service.get_recording(str(request["recording_id"]))
         diagnosis = recording["diagnosis"]
         if not isinstance(diagnosis, dict):
             raise ServiceError(f"recording {request['recording_id']} is diagnosed and has no diagnosis")

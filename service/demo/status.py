@@ -8,7 +8,7 @@ from datetime import datetime
 from core.rotor.finding import RotorState
 from scl import DEMO_PLANT_SCD
 from service.client.conditions import condition_of
-from service.client.rest_client import Document, ServiceClient, segment
+from service.client.rest_client import Document, ServiceClient
 from service.client.rotor_conditions import rotor_of
 from service.demo import MONTH, MOTORS, SCENARIO
 from service.demo.month import began, latest_s
@@ -109,7 +109,7 @@ def ask_plant(service: ServiceClient) -> list[MotorStatus]:
 def _require_demo_plant(service: ServiceClient) -> None:
     """Raise TruthError where the motors are not the demo's: nobody knows the truth of others."""
     demo = {str(motor["name"]) for motor in tomllib.loads(MOTORS.read_text(encoding="utf-8"))["motor"]}
-    found = [str(motor.get("name")) for motor in service.items("/motors")]
+    found = [str(motor.get("name")) for motor in service.list_motors()]
     others = [name for name in found if name not in demo]
     if found and not others:
         return
@@ -134,7 +134,7 @@ def ask_status(
     truths_at: takes the motors' healths, and returns for each the truths at the time of its latest record.
     Raises ServiceError, TruthError where the service watches another plant.
     """
-    healths = [_health(service, str(motor["name"])) for motor in service.items("/motors")]
+    healths = [_health(service, str(motor["name"])) for motor in service.list_motors()]
     alarms = open_alarms_of(service)
     return [
         MotorStatus(
@@ -148,7 +148,7 @@ def ask_status(
 
 
 def _health(service: ServiceClient, motor: str) -> Document:
-    return service.get(f"/motors/{segment(motor)}/health")
+    return service.get_health(motor)
 
 
 def _truth_of(relay: str, truths: Truths) -> Truth:

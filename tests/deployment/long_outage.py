@@ -95,10 +95,10 @@ def _require_in_vain(enterprise: Enterprise, asked: str) -> None:
     """A recording request that the relay could not be asked for ends, and says why."""
 
     def has_failed() -> bool:
-        return enterprise.service.recording_request(asked)["state"] == "failed"
+        return enterprise.service.get_event_report(asked)["state"] == "failed"
 
     enterprise.wait("the recording request fails", has_failed, START_LIMIT_S)
-    reason = str(enterprise.service.recording_request(asked)["reason"])
+    reason = str(enterprise.service.get_event_report(asked)["reason"])
     assert "router-b:10214" in reason, reason
 
 

@@ -68,9 +68,9 @@ class Enterprise:
         requests = {motor: str(self.service.request_recording(motor)["id"]) for motor in motors}
 
         def ended() -> bool:
-            states = {self.service.recording_request(request)["state"] for request in requests.values()}
+            states = {self.service.get_event_report(request)["state"] for request in requests.values()}
             assert "failed" not in states, [
-                self.service.recording_request(request) for request in requests.values()
+                self.service.get_event_report(request) for request in requests.values()
             ]
             return states == {"diagnosed"}
 

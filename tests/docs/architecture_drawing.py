@@ -7,13 +7,14 @@ grimp, the library that import-linter uses. The drawings are Mermaid flowcharts,
 import ast
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from pathlib import Path
 
 import grimp
 
 from tests.docs.pages import ROOT, between_markers
 
 PAGE = ROOT / "docs" / "explanation" / "architecture.md"
-PACKAGES = ("core", "scl", "mms", "ied_sim", "service")
+PACKAGES = ("core", "scl", "mms", "ied_sim", "service", "statorwatch_client")
 
 Arrows = frozenset[tuple[str, str]]
 
@@ -27,7 +28,7 @@ class Drawing:
 
 
 DRAWINGS = {
-    "house": Drawing("service", beside=("ied_sim", "core", "scl", "mms")),
+    "house": Drawing("service", beside=("ied_sim", "core", "scl", "mms", "statorwatch_client")),
     "collector": Drawing("service.collector"),
     "core": Drawing("core"),
     "mms": Drawing("mms"),
@@ -106,9 +107,14 @@ def table(shown: Iterable[str]) -> Iterator[str]:
     yield from (f"| `{room}` | {summary(room)} |" for room in shown)
 
 
+def is_in(root: Path, module: str) -> bool:
+    """Return whether a folder has the package of a module."""
+    return (root / module.partition(".")[0]).is_dir()
+
+
 def summary(module: str) -> str:
     """Return the first line of a module's docstring."""
-    path = ROOT / module.replace(".", "/")
+    path = next(root / module.replace(".", "/") for root in (ROOT, ROOT / "client") if is_in(root, module))
     source = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
     docstring = ast.get_docstring(ast.parse(source.read_text(encoding="utf-8")))
     return (docstring or "").partition("\n")[0]

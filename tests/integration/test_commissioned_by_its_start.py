@@ -50,7 +50,7 @@ def test_a_recorded_start_commissions_its_motor(tmp_path: Path, capsys: pytest.C
     ):
         with ServiceClient(service.url) as client:
             standing = str(client.request_recording(MOTOR)["id"])
-            assert eventually(lambda: client.recording_request(standing)["state"] == "diagnosed", 60)
+            assert eventually(lambda: client.get_event_report(standing)["state"] == "diagnosed", 60)
             (record,) = recordings(client)
             assert record["operation"] == "not-running"
             health = client.get(f"/motors/{MOTOR}/health")
@@ -74,7 +74,7 @@ def test_a_recorded_start_commissions_its_motor(tmp_path: Path, capsys: pytest.C
         service.start()
         with ServiceClient(service.url) as client:
             request = str(client.request_recording(MOTOR)["id"])
-            assert eventually(lambda: client.recording_request(request)["state"] == "diagnosed", 60)
+            assert eventually(lambda: client.get_event_report(request)["state"] == "diagnosed", 60)
             health = client.get(f"/motors/{MOTOR}/health")
             assert (health["verdict"], health["parameters_source"]) == ("healthy", "commissioned")
             starts = health["starts"]

@@ -26,7 +26,7 @@ PROGRESS = ("requested", "triggered", "recorded", "fetched", "diagnosed")
 
 
 def states(client: ServiceClient, requests: list[str]) -> list[str]:
-    return [str(client.recording_request(request)["state"]) for request in requests]
+    return [str(client.get_event_report(request)["state"]) for request in requests]
 
 
 def request_all(client: ServiceClient) -> list[str]:
@@ -70,7 +70,7 @@ def test_twelve_recordings_are_twelve_rows(tmp_path: Path) -> None:
                 service.log.read_text()
             )
             rows = Counter((str(row["ied"]), str(row["name"])) for row in client.items("/recordings"))
-            of_requests = {client.recording_request(request)["recording_id"] for request in requests}
+            of_requests = {client.get_event_report(request)["recording_id"] for request in requests}
             trends = [len(list(client.items(f"/motors/{motor}/trend"))) for motor in MOTOR_NAMES]
         assert len(plant.records()) == 12
         assert rows == Counter(plant.records())

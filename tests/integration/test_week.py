@@ -128,7 +128,7 @@ class Week:
     def _has_ended(self, requests: Sequence[str]) -> bool:
         ended = ("diagnosed", "failed")
         return eventually(
-            lambda: all(self.client.recording_request(one)["state"] in ended for one in requests), 60
+            lambda: all(self.client.get_event_report(one)["state"] in ended for one in requests), 60
         )
 
     def open_alarms(self) -> dict[str, Document]:

@@ -24,6 +24,7 @@ router = APIRouter(
     tags=["exports"],
     dependencies=[require(Permission.VIEW)],
     responses=FILES | problems(400),
+    default_response_class=StreamingResponse,  # or the document would say that it answers JSON too
 )
 
 Motors = Annotated[

@@ -8,7 +8,7 @@ import time
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol, cast
 
 from sqlalchemy.exc import SQLAlchemyError
 
@@ -18,11 +18,14 @@ from service.access.passwords import PASSWORD_RULE, hashed, is_usable
 from service.access.user_names import NAME_RULE, name_of
 from service.api.access.schemas import Token, User
 from service.cli.output import CommandError, failing_clearly
-from service.client.rest_client import Document, ServiceClient, ServiceError, segment
+from service.client.rest_client import Document, ServiceClient, ServiceError
 from service.configuration.settings import Settings, SettingsError
 from service.storage import Repository, StorageError, connect, migrate
 from service.storage.records import Actor, Role
 from service.storage.records import User as StoredUser
+
+if TYPE_CHECKING:
+    from statorwatch_client.models import Permission, TokenRequest, UserChange
 
 AT_ONCE = 1000
 
@@ -101,50 +104,55 @@ class _AtService:
         self._service = service
 
     def users(self) -> list[Document]:
-        return list(self._service.items("/users"))
+        return list(self._service.list_users())
 
     def add_user(
         self, name: str, roles: Collection[Role], full_name: str | None, password: str | None
     ) -> Document:
-        wanted = {"name": name, "roles": sorted(roles), "full_name": full_name, "password": password}
-        return self._service.send("POST", "/users", wanted)
+        return self._service.add_user(
+            {
+                "name": name,
+                "roles": [one.value for one in sorted(roles)],
+                "full_name": full_name,
+                "password": password,
+            }
+        )
 
     def change_user(self, name: str, change: Mapping[str, object]) -> Document:
-        return self._service.send("PATCH", f"/users/{segment(name)}", change)
+        return self._service.change_user(name, cast("UserChange", change))
 
     def set_password(self, name: str, password: str) -> None:
-        self._service.send("PUT", f"/users/{segment(name)}/password", {"password": password})
+        self._service.set_password(name, {"password": password})
 
     def unlock(self, name: str) -> None:
-        self._service.send("DELETE", f"/users/{segment(name)}/lock")
+        self._service.unlock_user(name)
 
     def end_sessions(self, name: str) -> None:
-        self._service.send("DELETE", f"/users/{segment(name)}/sessions")
+        self._service.end_sessions(name)
 
     def delete_user(self, name: str) -> None:
-        self._service.send("DELETE", f"/users/{segment(name)}")
+        self._service.delete_user(name)
 
     def tokens(self) -> list[Document]:
-        return list(self._service.items("/tokens" if self._manages() else "/account/tokens"))
+        return list(self._service.list_tokens() if self._manages() else self._service.list_own_tokens())
 
     def add_token(
         self, user: str | None, label: str, scope: Collection[str] | None, expires_time: str | None
     ) -> Document:
-        path = "/account/tokens" if user is None else f"/users/{segment(user)}/tokens"
-        wanted = {
-            "label": label,
-            "scope": None if scope is None else sorted(scope),
-            "expires_time": expires_time,
-        }
-        return self._service.send("POST", path, wanted)
+        words = None if scope is None else cast("list[Permission]", sorted(scope))
+        wanted: TokenRequest = {"label": label, "scope": words, "expires_time": expires_time}
+        if user is None:
+            return self._service.add_own_token(wanted)
+        return self._service.add_token(user, wanted)
 
     def revoke_token(self, token_id: str) -> None:
-        path = "/tokens" if self._manages() else "/account/tokens"
-        self._service.send("DELETE", f"{path}/{segment(token_id)}")
+        if self._manages():
+            self._service.revoke_token(token_id)
+        else:
+            self._service.revoke_own_token(token_id)
 
     def _manages(self) -> bool:
-        permissions = self._service.get("/account").get("permissions")
-        return isinstance(permissions, list) and "users" in permissions
+        return "users" in self._service.get_account()["permissions"]
 
 
 class _InDatabase:

@@ -20,7 +20,7 @@ def log_in(url: str, name: str | None, *, password_file: str | None, as_json: bo
     who = name or getpass.getuser()
     password = given_password(password_file, f"password of {who} at {without_credentials(url)}", again=False)
     with failing_clearly(ServiceError, CredentialsError), ServiceClient(url, anonymous=True) as service:
-        account, secret = service.log_in(who, password)
+        account, secret = service.begin_session(who, password)
         kept = remember(url, session=secret)
     if as_json:
         print_document(account)
@@ -33,7 +33,7 @@ def log_out(url: str, *, as_json: bool) -> None:
     with failing_clearly(ServiceError, CredentialsError):
         try:
             with ServiceClient(url) as service:
-                service.send("POST", "/logout")
+                service.log_out()
         except ServiceError as error:
             if error.status is None:
                 print_warning(f"the session is forgotten here, and may go on there: {error}")
@@ -47,12 +47,11 @@ def log_out(url: str, *, as_json: bool) -> None:
 def show_account(url: str, *, as_json: bool) -> None:
     """Print who asks, and what they may do. Raises CommandError."""
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        account = service.get("/account")
+        account = service.get_account()
     if as_json:
         print_document(account)
         return
-    permissions = account["permissions"]
-    may = " ".join(map(str, permissions)) if isinstance(permissions, list) else ""
+    may = " ".join(account["permissions"])
     results().print(Text(_who(account)), soft_wrap=True)
     results().print(Text(f"may: {may or 'nothing'}"), soft_wrap=True)
 
@@ -63,7 +62,7 @@ def change_password(url: str, *, old_file: str | None, new_file: str | None, as_
     new = given_password(new_file, "new password", again=True)
     with failing_clearly(ServiceError, CredentialsError):
         with ServiceClient(url) as service:
-            service.send("PUT", "/account/password", {"old": old, "new": new})
+            service.change_password({"old": old, "new": new})
         forget(url)
     if as_json:
         print_document({})

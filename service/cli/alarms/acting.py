@@ -4,6 +4,7 @@ import math
 import re
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
+from typing import TYPE_CHECKING
 
 from rich.text import Text
 
@@ -21,6 +22,9 @@ from service.cli.output import (
 )
 from service.client.rest_client import Document, ServiceClient, ServiceError
 
+if TYPE_CHECKING:
+    from statorwatch_client.models import AlarmState, ShelvingRequest
+
 AT_ONCE = 100
 """So many alarms are acknowledged in one request."""
 
@@ -36,13 +40,13 @@ class ShelvingEnd:
     lasting: str | None
     growth: str | None
 
-    def document(self, now: datetime) -> dict[str, object]:
+    def document(self, now: datetime) -> "ShelvingRequest":
         """Return what the API is asked. Raises CommandError."""
         if self.until is not None and self.lasting is not None:
             raise _wrong("--for", "expected one of --until and --for, found both")
         if self.until is None and self.lasting is None and self.growth is None:
             raise _wrong("--until", "expected an end of the shelving: --until, --for or --growth")
-        wanted: dict[str, object] = {}
+        wanted: ShelvingRequest = {}
         if self.until is not None:
             wanted["until"] = self.until
         if self.lasting is not None:
@@ -63,9 +67,9 @@ def acknowledge_alarms(
     with failing_clearly(ServiceError), ServiceClient(url) as service:
         ids = _of_motor(service, motor) if motor is not None else [whole_id(service, one) for one in begins]
         for first in range(0, len(ids), AT_ONCE):
-            done = service.acknowledge_alarms(ids[first : first + AT_ONCE], _said(comment))
-            acknowledged += _documents(done["acknowledged"])
-            refused += _documents(done["refused"])
+            done = service.acknowledge_alarms({"alarms": ids[first : first + AT_ONCE], "comment": comment})
+            acknowledged += done["acknowledged"]
+            refused += done["refused"]
     if as_json:
         print_document({"acknowledged": acknowledged, "refused": refused})
     elif not ids:
@@ -81,34 +85,32 @@ def acknowledge_alarms(
 
 def shelve_alarm(url: str, begin: str, end: ShelvingEnd, *, comment: str | None, as_json: bool) -> None:
     """Set an alarm aside. Raises CommandError."""
-    wanted = {**end.document(datetime.now(UTC)), **_said(comment)}
-    _set_aside(url, begin, "shelving", wanted, as_json=as_json)
+    wanted = end.document(datetime.now(UTC))
+    if comment is not None:
+        wanted["comment"] = comment
+    with failing_clearly(ServiceError), ServiceClient(url) as service:
+        alarm = service.shelve_alarm(whole_id(service, begin), wanted)
+    _print(alarm, as_json=as_json)
 
 
 def take_out_of_service(url: str, begin: str, *, comment: str | None, as_json: bool) -> None:
     """Set an alarm aside until somebody puts it back. Raises CommandError."""
-    _set_aside(url, begin, "out-of-service", _said(comment), as_json=as_json)
+    with failing_clearly(ServiceError), ServiceClient(url) as service:
+        alarm = service.take_alarm_out_of_service(whole_id(service, begin), {"comment": comment})
+    _print(alarm, as_json=as_json)
 
 
 def unshelve_alarm(url: str, begin: str, *, comment: str | None, as_json: bool) -> None:
     """End a shelving. Raises CommandError."""
-    _bring_back(url, begin, "shelving", comment, as_json=as_json)
+    with failing_clearly(ServiceError), ServiceClient(url) as service:
+        alarm = service.unshelve_alarm(whole_id(service, begin), comment=comment)
+    _print(alarm, as_json=as_json)
 
 
 def put_back_in_service(url: str, begin: str, *, comment: str | None, as_json: bool) -> None:
     """Put an alarm back in service. Raises CommandError."""
-    _bring_back(url, begin, "out-of-service", comment, as_json=as_json)
-
-
-def _set_aside(url: str, begin: str, how: str, wanted: Document, *, as_json: bool) -> None:
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        alarm = service.set_alarm_aside(whole_id(service, begin), how, wanted)
-    _print(alarm, as_json=as_json)
-
-
-def _bring_back(url: str, begin: str, how: str, comment: str | None, *, as_json: bool) -> None:
-    with failing_clearly(ServiceError), ServiceClient(url) as service:
-        alarm = service.bring_alarm_back(whole_id(service, begin), how, _said(comment))
+        alarm = service.put_alarm_back_in_service(whole_id(service, begin), comment=comment)
     _print(alarm, as_json=as_json)
 
 
@@ -121,16 +123,12 @@ def _print(alarm: Document, *, as_json: bool) -> None:
 
 def _of_motor(service: ServiceClient, motor: str) -> list[str]:
     """Return the ids of a motor's alarms that somebody has to take notice of. Raises ServiceError."""
-    waiting = ("unacknowledged", "returned-unacknowledged")
+    waiting: tuple[AlarmState, ...] = ("unacknowledged", "returned-unacknowledged")
     return [
         str(alarm["id"])
         for state in waiting
-        for alarm in service.items("/alarms/open", limit="1000", motor=motor, state=state)
+        for alarm in service.list_open_alarms(limit=1000, motor=motor, state=state)
     ]
-
-
-def _said(comment: str | None) -> dict[str, str]:
-    return {} if comment is None else {"comment": comment}
 
 
 def _documents(found: object) -> list[Document]:

@@ -23,7 +23,7 @@ def whole_id(service: ServiceClient, begin: str) -> str:
         )
     alike = (
         str(alarm["id"])
-        for alarm in service.items("/alarms/open", limit="1000")
+        for alarm in service.list_open_alarms(limit=1000)
         if str(alarm["id"]).startswith(begin.lower())
     )
     found = list(islice(alike, MOST_NAMED))

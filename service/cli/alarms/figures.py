@@ -15,7 +15,7 @@ from service.client.verdicts import to_the_second
 def show_figures(url: str, *, days: int, as_json: bool) -> None:
     """Print the key figures of the alarms. Raises CommandError."""
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        figures = service.get("/alarms/figures", days=str(days))
+        figures: Document = service.get_alarm_figures(days=days)
     if as_json:
         print_document(figures)
         return

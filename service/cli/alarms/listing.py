@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
+from typing import Any
 
 from rich.padding import Padding
 from rich.text import Text
@@ -11,7 +12,7 @@ from core.error_words import one_line
 from service.cli.alarms.choosing import whole_id
 from service.cli.output import WRONG_USE, CommandError, failing_clearly, print_document, results
 from service.cli.rows import print_rows, require_one_format
-from service.client.rest_client import Document, ServiceClient, ServiceError, segment
+from service.client.rest_client import Document, ServiceClient, ServiceError
 from service.client.verdicts import percent, to_the_second
 
 FIELDS = (
@@ -39,13 +40,13 @@ class Chosen:
     part_of: str | None = None
 
     @property
-    def path(self) -> str:
-        """Return the list that has them."""
-        return "/alarms" if self.over or self.part_of is not None else "/alarms/open"
+    def are_open(self) -> bool:
+        """Tell whether the list of open alarms has them."""
+        return not self.over and self.part_of is None
 
     @property
-    def query(self) -> dict[str, str]:
-        """Return the parameters of that list."""
+    def query(self) -> dict[str, Any]:
+        """Return the parameters of their list."""
         words = {"motor": self.motor, "site": self.site, "ied": self.relay, "state": self.state}
         return {name: word for name, word in words.items() if word is not None}
 
@@ -53,7 +54,7 @@ class Chosen:
 def show_alarms(url: str, chosen: Chosen, *, limit: int, as_csv: bool, as_json: bool) -> None:
     """Print alarms. Raises CommandError."""
     require_one_format(as_csv=as_csv, as_json=as_json)
-    if chosen.path == "/alarms" and (chosen.site is not None or chosen.state is not None):
+    if not chosen.are_open and (chosen.site is not None or chosen.state is not None):
         raise CommandError(
             "--all, --part-of: expected neither --site nor --state beside it, which choose among open alarms",
             details={"type": "WrongUse"},
@@ -63,8 +64,8 @@ def show_alarms(url: str, chosen: Chosen, *, limit: int, as_csv: bool, as_json: 
         query = chosen.query
         if chosen.part_of is not None:
             query["part_of"] = whole_id(service, chosen.part_of)
-        pages = service.items(chosen.path, limit=str(min(limit, 1000)), **query)
-        found = list(islice(pages, limit))
+        listed = service.list_open_alarms if chosen.are_open else service.list_alarms
+        found = list(islice(listed(limit=min(limit, 1000), **query), limit))
     if as_csv or as_json or not found:
         print_rows("alarms", found, FIELDS, {}, as_csv=as_csv, as_json=as_json)
         return
@@ -75,9 +76,9 @@ def show_alarms(url: str, chosen: Chosen, *, limit: int, as_csv: bool, as_json: 
 def show_alarm(url: str, alarm_id: str, *, as_json: bool) -> None:
     """Print one alarm and what happened to it, the latest at the top. Raises CommandError."""
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        path = f"/alarms/{segment(whole_id(service, alarm_id))}"
-        alarm = service.get(path)
-        changes = list(islice(service.items(f"{path}/changes", limit="1000"), MOST_CHANGES))
+        whole = whole_id(service, alarm_id)
+        alarm = service.get_alarm(whole)
+        changes = list(islice(service.list_alarm_changes(whole, limit=1000), MOST_CHANGES))
     if as_json:
         print_document({**alarm, "changes": changes})
         return

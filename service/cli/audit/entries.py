@@ -6,6 +6,7 @@ from dataclasses import asdict
 from difflib import get_close_matches
 from itertools import islice
 from pathlib import Path
+from typing import Any
 
 from sqlalchemy.exc import SQLAlchemyError
 
@@ -52,14 +53,15 @@ def show_entries(
     config: read the database of these settings; without it the service is asked.
     """
     require_one_format(as_csv=as_csv, as_json=as_json)
-    query = {name: word for name, word in chosen.items() if word is not None}
+    query: dict[str, Any] = {name: word for name, word in chosen.items() if word is not None}
     if config is not None:
         with failing_clearly(SettingsError, StorageError, SQLAlchemyError):
             found = list(islice(_of_database(config, query), limit))
     else:
         with failing_clearly(ServiceError), ServiceClient(url) as service:
-            pages = service.items("/audit/entries", limit=str(min(limit, AT_ONCE)), **query)
-            found = list(islice(pages, limit))
+            asked = {"from_" if name == "from" else name: word for name, word in query.items()}
+            entries = service.list_audit_entries(limit=min(limit, AT_ONCE), **asked)
+            found = list(islice(entries, limit))
     if as_csv:
         found = [_flat(entry) for entry in found]
     whole = ("number", "time")

@@ -64,12 +64,13 @@ def _of_database(config: Path, first: int) -> Iterator[Trail]:
 
 
 def _of_service(service: ServiceClient, first: int) -> Trail:
-    found = service.get("/audit/head")
-    head = Anchor(int(str(found["number"])), str(found["hash"]))
+    found = service.get_audit_head()
+    head = Anchor(found["number"], found["hash"])
 
     def read() -> Iterator[AuditEntry]:
         if head.number >= first:
-            for text in service.lines("/audit/export", first=str(first), last=str(head.number)):
-                yield entry_of_line(text)
+            with service.export_audit_trail(first=first, last=head.number) as trail:
+                for text in trail.iter_lines():
+                    yield entry_of_line(text)
 
     return Trail(read, START, head)

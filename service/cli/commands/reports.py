@@ -1,5 +1,6 @@
 """Commands that have the service make reports."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -43,8 +44,8 @@ def fleet(
     as_json: Json = False,
 ) -> None:
     """Write how all motors are, and what happened in the day or week before."""
-    query = [("period", period), ("until", until), *(("site", site) for site in sites or ())]
-    _report(url, "fleet", query, wanted, output, overwrite, as_json)
+    query = {"period": period, "until": until, "site": sites or None}
+    _report(url, "fleet", "", query, wanted, output, overwrite, as_json)
 
 
 @report.command()
@@ -59,9 +60,7 @@ def motor(
     as_json: Json = False,
 ) -> None:
     """Write all of one motor, with its pictures."""
-    from service.client.rest_client import segment
-
-    _report(url, f"motors/{segment(name)}", [("until", until)], wanted, output, overwrite, as_json)
+    _report(url, "motors", name, {"until": until}, wanted, output, overwrite, as_json)
 
 
 @report.command()
@@ -78,19 +77,22 @@ def alarms(
     as_json: Json = False,
 ) -> None:
     """Write all calls of alarms in a month, and what became of each."""
-    query = [("month", month), *(("site", site) for site in sites or ())]
-    _report(url, "alarms", query, wanted, output, overwrite, as_json)
+    query = {"month": month, "site": sites or None}
+    _report(url, "alarms", "", query, wanted, output, overwrite, as_json)
 
 
 def _report(
     url: str,
-    path: str,
-    query: list[tuple[str, str | None]],
+    kind: Literal["fleet", "alarms", "motors"],
+    motor: str,
+    query: Mapping[str, str | list[str] | None],
     wanted: str | None,
     output: Path | None,
     overwrite: bool,
     as_json: bool,
 ) -> None:
-    from service.cli.reports.files import write_report
+    from service.cli.reports.files import Report, write_report
 
-    write_report(url, path, query, wanted=wanted, output=output, overwrite=overwrite, as_json=as_json)
+    write_report(
+        url, Report(kind, motor), query, wanted=wanted, output=output, overwrite=overwrite, as_json=as_json
+    )

@@ -1,7 +1,9 @@
 """`mcc condition`, `note`, `notes`, `withdraw-note`, `restart-reference`: a motor over time and its notes."""
 
 import getpass
+from collections.abc import Sequence
 from itertools import islice
+from typing import TYPE_CHECKING, cast
 
 from rich.box import SIMPLE_HEAD
 from rich.text import Text
@@ -19,9 +21,12 @@ from service.cli.output import (
     results,
 )
 from service.client.conditions import condition_lines, state_text
-from service.client.rest_client import Document, ServiceClient, ServiceError, segment
+from service.client.rest_client import Document, ServiceClient, ServiceError
 from service.client.tables import FittedTable
 from service.client.verdicts import level, to_the_second
+
+if TYPE_CHECKING:
+    from statorwatch_client.models import NoteRequest, RestartRequest
 
 MOST_CHANGES = 1000
 """So many changes are shown, the latest first."""
@@ -29,10 +34,9 @@ MOST_CHANGES = 1000
 
 def show_condition(url: str, motor: str, *, history: bool, as_json: bool) -> None:
     """Print a motor's condition, and perhaps how it came to be. Raises CommandError."""
-    path = f"/motors/{segment(motor)}/condition"
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        condition = service.get(path)
-        changes = list(islice(service.items(f"{path}/history"), MOST_CHANGES)) if history else []
+        condition = service.get_condition(motor)
+        changes = list(islice(service.list_condition_history(motor), MOST_CHANGES)) if history else []
         notes = {note["id"]: note for note in _notes(service, motor)} if history else {}
     if as_json:
         print_document({**condition, "changes": changes} if history else condition)
@@ -48,9 +52,9 @@ def add_note(
 ) -> None:
     """Tell something of a motor. Raises CommandError."""
     _require_words(text, "TEXT")
-    note = {"kind": kind, "text": text, "by": by or _login()}
+    note = {"kind": kind, "text": text, "by": by or _login()} | ({} if time is None else {"time": time})
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        kept = service.add_note(motor, note if time is None else {**note, "time": time})
+        kept = service.add_note(motor, cast("NoteRequest", note))
         waits = _waits_for_a_record(service, kept)
     _print_kept(kept, waits=waits, as_json=as_json)
 
@@ -86,9 +90,11 @@ def restart_reference(
 ) -> None:
     """Have a motor's reference learnt anew. Raises CommandError."""
     _require_words(reason, "--reason")
-    restart = {"reason": reason, "by": by or _login()}
+    restart: RestartRequest = {"reason": reason, "by": by or _login()}
+    if time is not None:
+        restart["time"] = time
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        kept = service.restart_reference(motor, restart if time is None else {**restart, "time": time})
+        kept = service.restart_reference(motor, restart)
         waits = _waits_for_a_record(service, kept)
     _print_kept(kept, waits=waits, as_json=as_json)
 
@@ -106,10 +112,10 @@ def withdraw_note(url: str, motor: str, note_id: str, reason: str, *, by: str | 
 
 
 def _notes(service: ServiceClient, motor: str) -> "islice[Document]":
-    return islice(service.items(f"/motors/{segment(motor)}/notes", limit="1000"), MOST_CHANGES)
+    return islice(service.list_notes(motor, limit=1000), MOST_CHANGES)
 
 
-def _history_table(changes: list[Document], notes: dict[object, Document]) -> FittedTable:
+def _history_table(changes: Sequence[Document], notes: dict[object, Document]) -> FittedTable:
     table = FittedTable(box=SIMPLE_HEAD, collapse_padding=True)
     table.add_column("time", no_wrap=True)
     table.add_column("condition")
@@ -134,7 +140,7 @@ def _waits_for_a_record(service: ServiceClient, note: Document) -> bool:
     """Return whether a note ends the reference, and no record is later. Raises ServiceError."""
     if note["kind"] not in ENDING:
         return False
-    as_of = service.get(f"/motors/{segment(str(note['motor']))}/condition", history="0")["as_of"]
+    as_of = service.get_condition(str(note["motor"]), history=0)["as_of"]
     return as_of is None or nanoseconds(str(as_of)) < nanoseconds(str(note["time"]))
 
 

@@ -170,7 +170,7 @@ def _motors(plant: DemoPlant, service: ServiceClient) -> list[DemoMotor]:
         _report(f"{relay} does not answer yet; the others go on")
     return [
         DemoMotor(str(motor["name"]), str(motor["site"]), truths[str(motor["ied"])], str(motor["ied"]))
-        for motor in service.items("/motors")
+        for motor in service.list_motors()
     ]
 
 

@@ -105,7 +105,7 @@ def conditions_of(service: ServiceClient) -> dict[str, Document]:
     """Return each motor's condition by its name. Raises ServiceError."""
     return {
         str(health["motor"]): condition_of(health)
-        for motor in service.items("/motors", health="true", limit="1000")
+        for motor in service.list_motors(health=True, limit=1000)
         if isinstance(health := motor["health"], Mapping)
     }
 

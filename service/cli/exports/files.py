@@ -1,8 +1,8 @@
 """Has the service make a file of a table, and puts it where it is wanted: all of it, or nothing."""
 
 import sys
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from typing import BinaryIO
 from uuid import uuid4
@@ -12,8 +12,17 @@ from rich.text import Text
 from core.error_words import one_line
 from service.cli.output import WRONG_USE, CommandError, failing_clearly, print_document, results
 from service.client.rest_client import ServiceClient, ServiceError
+from statorwatch_client import Download
 
 FORMATS = ("csv", "xlsx", "parquet")
+TABLES: dict[str, Callable[..., AbstractContextManager[Download]]] = {
+    "trend": ServiceClient.export_trend,
+    "measurements": ServiceClient.export_measurements,
+    "recordings": ServiceClient.export_recordings,
+    "starts": ServiceClient.export_starts,
+    "alarms": ServiceClient.export_alarms,
+}
+"""How a service is asked for each table."""
 
 
 def export_table(
@@ -35,14 +44,14 @@ def export_table(
     chosen = wanted or _format_of(output)
     if output is None:
         _require_readable(chosen, as_json=as_json)
-    words = [("format", chosen), *(("motor", motor) for motor in motors)]
-    words += [(name, value) for name, value in query.items() if value is not None]
+    asked = {"from_" if name == "from" else name: value for name, value in query.items()}
     with (
         failing_clearly(ServiceError, OSError),
         ServiceClient(url) as service,
         written_file(output, overwrite=overwrite) as file,
+        TABLES[table](service, motor=motors or None, format=chosen, **asked) as export,
     ):
-        size_bytes = service.save(f"/exports/{table}", words, file)
+        size_bytes = export.save(file)
     if output is None:
         return
     if as_json:

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from itertools import islice
+from typing import Any
 
 from rich.text import Text
 
@@ -19,9 +20,9 @@ def list_notifications(
 ) -> None:
     """Print messages, latest first, and why those were not sent that were not. Raises CommandError."""
     given = {"state": state, "channel": channel, "alarm": alarm}
-    chosen = {name: word for name, word in given.items() if word is not None}
+    chosen: dict[str, Any] = {name: word for name, word in given.items() if word is not None}
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        found = list(islice(service.items("/notifications", limit=str(min(limit, 1000)), **chosen), limit))
+        found = list(islice(service.list_notifications(limit=min(limit, 1000), **chosen), limit))
     if as_json:
         print_document({"notifications": found})
         return
@@ -42,7 +43,7 @@ def list_notifications(
 def list_channels(url: str, *, as_json: bool) -> None:
     """Print the channels of the settings, and what waits for them. Raises CommandError."""
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        found = list(service.items("/notification-channels"))
+        found = list(service.list_channels())
     if as_json:
         print_document({"channels": found})
         return
@@ -66,7 +67,7 @@ def retry_notifications(url: str, ids: Sequence[str], *, every: bool, as_json: b
         )
     with failing_clearly(ServiceError), ServiceClient(url) as service:
         if every:
-            ids = [str(one["id"]) for one in service.items("/notifications", state="dead", limit="1000")]
+            ids = [str(one["id"]) for one in service.list_notifications(state="dead", limit=1000)]
         retried = [service.retry_notification(one) for one in ids]
     if as_json:
         print_document({"notifications": retried})

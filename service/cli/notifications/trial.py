@@ -7,7 +7,7 @@ from rich.text import Text
 
 from core.error_words import one_line
 from service.cli.output import DONE, FAILED, CommandError, failing_clearly, print_document, results
-from service.client.rest_client import Document, ServiceClient, ServiceError, segment
+from service.client.rest_client import Document, ServiceClient, ServiceError
 
 POLL_PERIOD_S = 0.2
 ENDED = ("sent", "dead", "withdrawn")
@@ -19,12 +19,12 @@ def send_tests(url: str, channels: Sequence[str], *, wait_s: float, as_json: boo
     Returns the exit code: 1 where a receiver did not take it within the time. Raises CommandError.
     """
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        names = list(channels) or [str(one["name"]) for one in service.items("/notification-channels")]
+        names = list(channels) or [str(one["name"]) for one in service.list_channels()]
         if not names:
             raise CommandError("the settings have no [notifications.channels]: nobody is told")
         tests: list[Document] = []
         for name in names:
-            tests += service.test_channel(name)
+            tests += service.send_test(name)
         ended = _followed(service, tests, wait_s)
     if as_json:
         print_document({"notifications": ended})
@@ -43,9 +43,7 @@ def _followed(service: ServiceClient, tests: Sequence[Document], wait_s: float) 
             one
             if one["state"] in ENDED
             else {
-                key: value
-                for key, value in service.get(f"/notifications/{segment(str(one['id']))}").items()
-                if key != "told"
+                key: value for key, value in service.get_notification(str(one["id"])).items() if key != "told"
             }
             for one in found
         ]

@@ -22,7 +22,7 @@ def check_conditions(url: str, fail_on: str, *, as_json: bool) -> int:
     """
     states = AT_OR_BEYOND[fail_on]
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        motors = list(service.items("/motors", health="true", limit="1000"))
+        motors = list(service.list_motors(health=True, limit=1000))
         found = sorted(_at(motors, states), key=lambda one: states.index(str(one["state"])))
     if as_json:
         print_document({"fail_on": fail_on, "motors": len(motors), "found": found})

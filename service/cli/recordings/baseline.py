@@ -2,14 +2,18 @@
 
 import getpass
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from rich.text import Text
 
 from core.error_words import one_line
 from service.cli.output import failing_clearly, print_document, results
 from service.cli.rows import print_rows, require_one_format
-from service.client.rest_client import Document, ServiceClient, ServiceError, segment
+from service.client.rest_client import Document, ServiceClient, ServiceError
 from service.client.verdicts import to_the_second
+
+if TYPE_CHECKING:
+    from statorwatch_client.models import BaselineRequest
 
 FIELDS = ("recorded_time", "motor", "ied", "name", "doubt", "id")
 
@@ -18,7 +22,7 @@ def show_baseline(url: str, motor: str, *, as_csv: bool, as_json: bool) -> None:
     """Print a motor's baseline. Raises CommandError."""
     require_one_format(as_csv=as_csv, as_json=as_json)
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        baseline = service.get(f"/motors/{segment(motor)}/baseline")
+        baseline = service.get_baseline(motor)
     if as_json:
         print_document(baseline)
         return
@@ -41,9 +45,9 @@ def set_baseline(
     url: str, motor: str, recordings: Sequence[str], *, reason: str | None, by: str | None, as_json: bool
 ) -> None:
     """Replace a motor's baseline. Raises CommandError."""
-    wanted: dict[str, object] = {"recording_ids": list(recordings)}
+    wanted: BaselineRequest = {"recording_ids": list(recordings)}
     if reason is not None:
-        wanted |= {"reason": reason, "by": by or getpass.getuser()}
+        wanted["reason"], wanted["by"] = reason, by or getpass.getuser()
     with failing_clearly(ServiceError), ServiceClient(url) as service:
         baseline = service.set_baseline(motor, wanted)
     if as_json:
@@ -58,7 +62,7 @@ def drop_baseline(url: str, motor: str, *, reason: str | None, by: str | None, a
     """Forget a motor's baseline. Raises CommandError."""
     said = {} if reason is None else {"reason": reason, "by": by or getpass.getuser()}
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        service.drop_baseline(motor, said)
+        service.drop_baseline(motor, **said)
     if as_json:
         print_document({"motor": motor, "recordings": []})
         return

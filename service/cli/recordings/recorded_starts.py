@@ -11,7 +11,7 @@ from core.machines.motor_file.reader import Plate
 from core.recordings import Recording, RecordingError, read
 from service.cli.output import CommandError
 from service.client.recording_download import download_recording
-from service.client.rest_client import Document, ServiceClient, segment
+from service.client.rest_client import Document, ServiceClient
 from service.client.verdicts import to_the_second
 
 MOST_STARTS = 5
@@ -71,11 +71,11 @@ def fetch_starts(service: ServiceClient, plate: Plate, chosen: Sequence[str], fo
 
 
 def _starts(service: ServiceClient, motor: str) -> list[Document]:
-    return list(service.items(f"/motors/{segment(motor)}/recordings", operation="start"))
+    return list(service.list_recordings_of_motor(motor, operation="start"))
 
 
 def _of_motor(service: ServiceClient, recording_id: str, motor: str) -> Document:
-    found = service.get(f"/recordings/{segment(recording_id)}")
+    found = service.get_recording(recording_id)
     if found["motor"] != motor:
         raise CommandError(
             f"--recording {recording_id}: expected a recording of {motor}, found one of {found['motor']}",

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Sequence
+from typing import TYPE_CHECKING, cast
 
 from rich.text import Text
 
@@ -9,6 +10,9 @@ from service.cli.output import FAILED, CommandError, failing_clearly
 from service.cli.rows import Column, print_rows, require_one_format
 from service.client.rest_client import Document, ServiceClient, ServiceError
 from service.client.verdicts import level, verdict_text
+
+if TYPE_CHECKING:
+    from statorwatch_client.models import DiagnosisRequest
 
 ENDED = ("done", "failed")
 POLL_PERIOD_S = 0.25
@@ -30,12 +34,16 @@ def rediagnose_recordings(
     Raises CommandError, also where one has failed.
     """
     require_one_format(as_csv=as_csv, as_json=as_json)
+    wanted = cast("DiagnosisRequest", {"method": method, "model": model})
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        runs = [service.request_diagnosis(one, method=method, model=model) for one in recordings]
+        runs = [service.request_diagnosis(one, wanted) for one in recordings]
         deadline_s = time.monotonic() + wait_s
         while any(run["state"] not in ENDED for run in runs) and time.monotonic() < deadline_s:
             time.sleep(POLL_PERIOD_S)
-            runs = [run if run["state"] in ENDED else service.diagnosis(run) for run in runs]
+            runs = [
+                run if run["state"] in ENDED else service.get_diagnosis(run["recording_id"], run["id"])
+                for run in runs
+            ]
     rows = [{**run, **_result(run)} for run in runs]
     columns: dict[str, Column] = {
         "recording": lambda row: str(row["recording_id"]),

@@ -4,7 +4,7 @@ from itertools import islice
 
 from service.cli.output import failing_clearly
 from service.cli.rows import Column, print_rows, require_one_format
-from service.client.rest_client import Document, ServiceClient, ServiceError, segment
+from service.client.rest_client import Document, ServiceClient, ServiceError
 from service.client.verdicts import percent, to_the_second
 
 FIELDS = (
@@ -19,7 +19,7 @@ def show_starts(url: str, motor: str, *, limit: int, as_csv: bool, as_json: bool
     """Print the latest starts of a motor, oldest first. Raises CommandError."""
     require_one_format(as_csv=as_csv, as_json=as_json)
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        found = service.items(f"/motors/{segment(motor)}/starts", limit=str(min(limit, 1000)))
+        found = service.list_starts(motor, limit=min(limit, 1000))
         starts = list(islice(found, limit))[::-1]
     columns: dict[str, Column] = {
         "time": lambda one: to_the_second(one["time"]),

@@ -2,13 +2,14 @@
 
 from itertools import islice
 from pathlib import Path
+from typing import Any
 
 from rich.text import Text
 
 from core.error_words import one_line
 from service.cli.output import failing_clearly, print_document, results
 from service.cli.rows import Column, print_rows, require_one_format
-from service.client.rest_client import Document, ServiceClient, ServiceError
+from service.client.rest_client import Document, ServiceClient, ServiceError, segment
 from service.client.verdicts import to_the_second, verdict_text
 
 FIELDS = (
@@ -31,9 +32,9 @@ def show_recordings(
     """Print recordings, latest first. Raises CommandError."""
     require_one_format(as_csv=as_csv, as_json=as_json)
     filters = (("motor", motor), ("state", state), ("operation", operation))
-    chosen = {name: word for name, word in filters if word is not None}
+    chosen: dict[str, Any] = {name: word for name, word in filters if word is not None}
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        found = list(islice(service.items("/recordings", limit=str(min(limit, 1000)), **chosen), limit))
+        found = list(islice(service.list_recordings(limit=min(limit, 1000), **chosen), limit))
     columns: dict[str, Column] = {
         "recorded": lambda one: to_the_second(one["recorded_time"] or one["announced_time"]),
         "motor": lambda one: str(one["motor"]),
@@ -53,15 +54,19 @@ def show_recordings(
 
 def download_recording(url: str, recording: str, output: Path | None, *, as_json: bool) -> None:
     """Save a recording's archive; an existing file is left alone. Raises CommandError."""
-    with failing_clearly(ServiceError, OSError), ServiceClient(url) as service:
-        name, content = service.download(recording)
+    with (
+        failing_clearly(ServiceError, OSError),
+        ServiceClient(url) as service,
+        service.download_recording(recording) as archive,
+    ):
+        name = archive.name or f"{segment(recording)}.zip"
         path = Path(name) if output is None else output / name if output.is_dir() else output
         with path.open("xb") as file:
-            file.write(content)
+            size_bytes = archive.save(file)
     if as_json:
-        print_document({"recording_id": recording, "file": str(path), "size_bytes": len(content)})
+        print_document({"recording_id": recording, "file": str(path), "size_bytes": size_bytes})
         return
-    results().print(Text(one_line(f"{path}: {len(content)} bytes")), soft_wrap=True)
+    results().print(Text(one_line(f"{path}: {size_bytes} bytes")), soft_wrap=True)
 
 
 def _state(recording: Document) -> Text:

@@ -9,7 +9,7 @@ from rich.text import Text
 from core.error_words import one_line
 from service.cli.output import CommandError, failing_clearly, print_document, results
 from service.cli.remote import verdict_line, what_next
-from service.client.rest_client import Document, ServiceClient, ServiceError, segment
+from service.client.rest_client import Document, ServiceClient, ServiceError
 
 REFUSED = ("rejected", "failed")
 ENDED = ("diagnosed", *REFUSED)
@@ -25,11 +25,11 @@ def upload_recording(url: str, motor: str, files: Sequence[Path], *, wait_s: flo
     if missing:
         raise CommandError(f"{', '.join(missing)}: expected a file", details={"type": "FileNotFound"})
     with failing_clearly(ServiceError, OSError), ServiceClient(url) as service:
-        recording, is_new = service.upload(motor, {file.name: file.read_bytes() for file in files})
+        recording, is_new = service.upload_recording(motor, {file.name: file.read_bytes() for file in files})
         deadline_s = time.monotonic() + wait_s
         while recording["state"] not in ENDED and time.monotonic() < deadline_s:
             time.sleep(POLL_PERIOD_S)
-            recording = service.get(f"/recordings/{segment(str(recording['id']))}")
+            recording = service.get_recording(recording["id"])
     name = f"{motor}: recording {recording['name']} ({recording['id']})"
     if wait_s:
         _require_verdict(name, recording, wait_s)

@@ -1,23 +1,47 @@
 """Has the service make a report, and puts it where it is wanted: all of it, or nothing."""
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
+from typing import Literal
 
 from rich.text import Text
 
 from core.error_words import one_line
 from service.cli.exports.files import written_file
 from service.cli.output import WRONG_USE, CommandError, failing_clearly, print_document, results
-from service.client.rest_client import ServiceClient, ServiceError
+from service.client.rest_client import ServiceClient, ServiceError, segment
+from statorwatch_client import Download
 
 FORMATS = ("pdf", "xlsx")
 
 
+@dataclass(frozen=True)
+class Report:
+    """A report: of the fleet, of the alarms, or of one motor."""
+
+    kind: Literal["fleet", "alarms", "motors"]
+    motor: str = ""
+
+    @property
+    def name(self) -> str:
+        """Return what it is called below /reports."""
+        return f"motors/{segment(self.motor)}" if self.kind == "motors" else self.kind
+
+    def asked_of(self, service: ServiceClient) -> Callable[..., AbstractContextManager[Download]]:
+        """Return what asks a service for it."""
+        if self.kind == "motors":
+            return partial(service.get_motor_report, self.motor)
+        return service.get_fleet_report if self.kind == "fleet" else service.get_alarms_report
+
+
 def write_report(
     url: str,
-    path: str,
-    query: Sequence[tuple[str, str | None]],
+    report: Report,
+    query: Mapping[str, str | Sequence[str] | None],
     *,
     wanted: str | None,
     output: Path | None,
@@ -26,7 +50,7 @@ def write_report(
 ) -> None:
     """Write a report to a file; without `output` to stdout.
 
-    path: of the report below /reports.  query: what is asked for; None where the service chooses.
+    query: what is asked for besides; None where the service chooses.
     wanted: the format; None: that of the file's name, else PDF. Raises CommandError.
     """
     chosen = wanted or _format_of(output)
@@ -34,17 +58,19 @@ def write_report(
         why = "the file itself would go to stdout" if as_json else "a terminal cannot show it"
         problem = f"expected --output FILE, for {why}"
         raise CommandError(problem, details={"type": "WrongUse"}, exit_code=WRONG_USE)
-    words = [(name, value) for name, value in query if value is not None]
     with (
         failing_clearly(ServiceError, OSError),
         ServiceClient(url) as service,
         written_file(output, overwrite=overwrite) as file,
+        report.asked_of(service)(**query, format=chosen) as answer,
     ):
-        size_bytes = service.save(f"/reports/{path}", [*words, ("format", chosen)], file)
+        size_bytes = answer.save(file)
     if output is None:
         return
     if as_json:
-        print_document({"report": path, "file": str(output), "format": chosen, "size_bytes": size_bytes})
+        print_document(
+            {"report": report.name, "file": str(output), "format": chosen, "size_bytes": size_bytes}
+        )
     else:
         results().print(Text(one_line(f"{output}: {size_bytes} bytes")), soft_wrap=True)
 

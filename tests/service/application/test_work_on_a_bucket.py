@@ -66,7 +66,8 @@ def test_a_record_comes_by_the_bucket_to_the_other_host_and_to_the_page(
         (recording,) = repository.recordings(limit=5).items
         waveform = client.get(f"/recordings/{recording.id}/waveform")
         assert waveform["channels"]
-        archive = zipfile.ZipFile(io.BytesIO(client.download(recording.id)[1]))
+        with client.download_recording(recording.id) as file:
+            archive = zipfile.ZipFile(io.BytesIO(file.read()))
         relayed = {path.name.upper(): path.read_bytes() for path in plant.events(RELAY).iterdir()}
         assert {name: archive.read(name) for name in archive.namelist()} == relayed
         assert not (service.data / "recordings").exists()
