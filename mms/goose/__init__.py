@@ -1,4 +1,4 @@
-"""GOOSE (IEC 61850-8-1 clause 18 and annex A): frames, what a subscriber makes of them, what is published.
+"""GOOSE (IEC 61850-8-1 clause 18, annex A): frames, what a subscriber makes of them, how they are published.
 
 Nothing here touches C, and only `socket` touches the network.
 """

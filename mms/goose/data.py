@@ -2,13 +2,29 @@
 
 import struct
 from collections.abc import Sequence
+from enum import IntEnum
 
 from mms.goose.ber import element, elements, integer
 from mms.goose.errors import GooseFrameError
 from mms.values import BitString, DataAccessError, Timestamp, Value
 
-ARRAY, STRUCTURE, BOOLEAN, BIT_STRING, INTEGER, UNSIGNED = 0xA1, 0xA2, 0x83, 0x84, 0x85, 0x86
-FLOAT, OCTET_STRING, VISIBLE_STRING, BINARY_TIME, MMS_STRING, UTC_TIME = 0x87, 0x89, 0x8A, 0x8C, 0x90, 0x91
+
+class _Tag(IntEnum):
+    """Tags of Data. A match statement compares with names that have a dot."""
+
+    BOOLEAN = 0x83
+    BIT_STRING = 0x84
+    INTEGER = 0x85
+    UNSIGNED = 0x86
+    FLOAT = 0x87
+    OCTET_STRING = 0x89
+    VISIBLE_STRING = 0x8A
+    BINARY_TIME = 0x8C
+    MMS_STRING = 0x90
+    UTC_TIME = 0x91
+    ARRAY = 0xA1
+    STRUCTURE = 0xA2
+
 
 DEEPEST = 16
 """Structures within structures: the deepest common data class has five."""
@@ -64,23 +80,27 @@ def decode_values(octets: bytes) -> tuple[Value, ...]:
 def _encoded(value: Value) -> bytes:
     match value:
         case bool():
-            return element(BOOLEAN, bytes([value]))
+            return element(_Tag.BOOLEAN, bytes([value]))
         case int():
-            return element(INTEGER, integer(value))
+            return element(_Tag.INTEGER, integer(value))
         case float():
-            return element(FLOAT, bytes([8]) + struct.pack(">f", value))
+            return element(_Tag.FLOAT, bytes([8]) + struct.pack(">f", value))
         case str():
-            return element(MMS_STRING if not value.isascii() else VISIBLE_STRING, value.encode())
+            return element(_Tag.VISIBLE_STRING if _is_visible(value) else _Tag.MMS_STRING, value.encode())
         case bytes():
-            return element(OCTET_STRING, value)
+            return element(_Tag.OCTET_STRING, value)
         case Timestamp():
-            return element(UTC_TIME, value.octets())
+            return element(_Tag.UTC_TIME, value.octets())
         case BitString():
-            return element(BIT_STRING, _bits(value))
+            return element(_Tag.BIT_STRING, _bits(value))
         case tuple():
-            return element(STRUCTURE, encode_values(value))
+            return element(_Tag.STRUCTURE, encode_values(value))
         case None | DataAccessError():
             raise ValueError(f"GOOSE carries no {value!r}")
+
+
+def _is_visible(text: str) -> bool:
+    return text.isascii() and text.isprintable()
 
 
 def _bits(value: BitString) -> bytes:
@@ -102,22 +122,22 @@ def _decoded_all(octets: bytes, depth: int) -> tuple[Value, ...]:
 def _decoded(tag: int, content: bytes, depth: int) -> Value:
     size = len(content)
     match tag:
-        case 0xA1 | 0xA2:  # ARRAY, STRUCTURE
+        case _Tag.ARRAY | _Tag.STRUCTURE:
             return _decoded_all(content, depth + 1)
-        case 0x83 if size == 1:  # BOOLEAN
+        case _Tag.BOOLEAN if size == 1:
             return content != b"\x00"
-        case 0x84 if size and content[0] < 8 and (size > 1 or not content[0]):  # BIT_STRING
+        case _Tag.BIT_STRING if size and content[0] < 8 and (size > 1 or not content[0]):
             bits = [bool(octet >> (7 - place) & 1) for octet in content[1:] for place in range(8)]
             return BitString(tuple(bits[: len(bits) - content[0]]))
-        case 0x85 | 0x86 if 0 < size <= _LONGEST_INTEGER:  # INTEGER, UNSIGNED
-            return int.from_bytes(content, "big", signed=tag == INTEGER)
-        case 0x87 if size in _FLOATS and content[0] == _FLOATS[size][0]:  # FLOAT
+        case _Tag.INTEGER | _Tag.UNSIGNED if 0 < size <= _LONGEST_INTEGER:
+            return int.from_bytes(content, "big", signed=tag == _Tag.INTEGER)
+        case _Tag.FLOAT if size in _FLOATS and content[0] == _FLOATS[size][0]:
             (number,) = struct.unpack(_FLOATS[size][1], content[1:])
             return float(number)
-        case 0x89 | 0x8C:  # OCTET_STRING, BINARY_TIME
+        case _Tag.OCTET_STRING | _Tag.BINARY_TIME:
             return content
-        case 0x8A | 0x90:  # VISIBLE_STRING, MMS_STRING
+        case _Tag.VISIBLE_STRING | _Tag.MMS_STRING:
             return content.decode("utf-8", errors="replace")
-        case 0x91 if size == 8:  # UTC_TIME
+        case _Tag.UTC_TIME if size == 8:
             return Timestamp.of(content)
     raise GooseFrameError(_PLACE, "a value of a data set", f"tag 0x{tag:02x} with {size} octets")

@@ -6,7 +6,7 @@ an earlier state is a replay, as long as the publisher is alive. Where its time 
 anew with lower numbers: then any state is taken, as a first one.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from enum import Enum
 
 from mms.goose.frame import GooseFrame
@@ -72,7 +72,6 @@ class Reception(Enum):
 _COUNTING = {Reception.FIRST, Reception.CHANGED, Reception.REPEATED, Reception.RESUMED}
 
 
-@dataclass(slots=True)
 class Subscription:
     """State of one control block as a subscriber sees it.
 
@@ -82,26 +81,20 @@ class Subscription:
         The block as it is configured.
     accept_simulated : bool
         Whether messages of test sets count.
-
-    Attributes
-    ----------
-    latest : GooseMessage or None
-        The latest message that counted.
-    missed_states : int
-        States that were told, or should have been, and never came.
-    lost : int
-        How often the publisher fell silent.
-    ignored : dict of Reception to int
-        How many frames were ignored, by reason.
     """
 
-    block: SubscribedBlock
-    accept_simulated: bool = False
-    latest: GooseMessage | None = field(default=None, init=False)
-    missed_states: int = field(default=0, init=False)
-    lost: int = field(default=0, init=False)
-    ignored: dict[Reception, int] = field(default_factory=dict, init=False)
-    _ends_s: float | None = field(default=None, init=False)
+    def __init__(self, block: SubscribedBlock, *, accept_simulated: bool = False) -> None:
+        self.block = block
+        self._accept_simulated = accept_simulated
+        self._ends_s: float | None = None
+        self.latest: GooseMessage | None = None
+        """The latest message that counted."""
+        self.missed_states = 0
+        """States that were told, or should have been, and never came."""
+        self.lost = 0
+        """How often the publisher fell silent."""
+        self.ignored: dict[Reception, int] = {}
+        """How many frames were ignored, by reason."""
 
     @property
     def is_alive(self) -> bool:
@@ -159,7 +152,7 @@ class Subscription:
         found = {
             Reception.WRONG_ADDRESS: (frame.application_id, frame.destination)
             != (block.application_id, block.destination),
-            Reception.SIMULATED: (frame.simulated or message.simulation) and not self.accept_simulated,
+            Reception.SIMULATED: (frame.simulated or message.simulation) and not self._accept_simulated,
             Reception.NEEDS_COMMISSIONING: message.needs_commissioning,
             Reception.WRONG_REVISION: message.configuration_revision != block.configuration_revision,
             Reception.WRONG_DATA_SET: message.data_set != block.data_set
@@ -200,9 +193,8 @@ def ahead(before: int, after: int) -> int:
     int
         The steps; 0 or less where it is the same, or behind.
     """
-    forward = after - before
-    if forward < 0:  # 0 is left out on the way round
-        forward += HIGHEST_NUMBER
+    # 0 is left out on the way round.
+    forward = after - before + (0 if after >= before else HIGHEST_NUMBER)
     return forward if forward <= HIGHEST_NUMBER // 2 else forward - HIGHEST_NUMBER
 
 

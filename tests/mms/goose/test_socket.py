@@ -12,13 +12,13 @@ EXCHANGE = """
 import subprocess
 from dataclasses import replace
 from mms.goose import RawSocket, decode_frame, encode_frame
-from tests.mms.goose.messages import FRAME, DESTINATION
+from tests.mms.goose.blocks import BLOCK, frame
 
 for words in ("link add left type veth peer name right", "link set left up", "link set right up"):
     subprocess.run(["ip", *words.split()], check=True)
-with RawSocket("left") as sender, RawSocket("right", [DESTINATION]) as receiver:
+with RawSocket("left") as sender, RawSocket("right", [BLOCK.destination]) as receiver:
     receiver.wait_at_most(10)
-    sent = replace(FRAME, source=sender.address)
+    sent = replace(frame(), source=sender.address)
     sender.send(encode_frame(sent))
     assert decode_frame(receiver.receive()) == sent
 print("exchanged")

@@ -1,99 +1,132 @@
-"""What counts, and what is a replay, another configuration, a test, or silence."""
+"""What a subscriber makes of replays, other configurations, tests, jumps, wraps and silence."""
 
 from dataclasses import replace
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from mms.goose import Reception, Subscription
-from mms.goose.frame import GooseFrame
-from tests.mms.goose.messages import BLOCK, FRAME, frame
+from mms.goose import GooseFrame, Reception, Subscription
+from mms.goose.subscription import ahead, following
+from mms.values import Timestamp
+from tests.mms.goose.blocks import BLOCK, NOW_NS, frame, frames
 
-LIFE_S = 3.0
 HIGHEST = 2**32 - 1
 
 
 @pytest.fixture
 def subscription() -> Subscription:
-    return Subscription(BLOCK)
+    """It has heard state 5 at 0 s."""
+    found = Subscription(BLOCK)
+    assert found.receive(frame(), 0.0) is Reception.FIRST
+    return found
 
 
-def test_states_follow_each_other(subscription: Subscription) -> None:
-    made = [
-        subscription.receive(each, now_s)
-        for now_s, each in enumerate(
-            [frame(7, 4), frame(7, 5), frame(8, 0, (True, 5)), frame(8, 1, (True, 5))]
-        )
-    ]
-    assert made == [Reception.FIRST, Reception.REPEATED, Reception.CHANGED, Reception.REPEATED]
-    assert subscription.latest is not None
-    assert subscription.latest.values == (True, 5)
-    assert (subscription.missed_states, subscription.lost, subscription.ignored) == (0, 0, {})
-
-
-def test_a_replay_changes_nothing(subscription: Subscription) -> None:
-    subscription.receive(frame(7, 4), 0)
-    subscription.receive(frame(8, 0, (True, 5)), 1)
-    for old in (frame(7, 4), frame(7, 9), frame(8, 0, (True, 5))):
-        assert subscription.receive(old, 2) is Reception.REPLAYED
-    assert subscription.latest == frame(8, 0, (True, 5)).message
-    assert subscription.ignored == {Reception.REPLAYED: 3}
-
-
-def test_missed_states_are_counted(subscription: Subscription) -> None:
-    subscription.receive(frame(7, 0), 0)
-    assert subscription.receive(frame(11, 2), 1) is Reception.CHANGED
-    assert subscription.missed_states == 3
+def test_the_same_state_again_and_a_later_one_count(subscription: Subscription) -> None:
+    assert subscription.receive(frame(sequence_number=1), 0.1) is Reception.REPEATED
+    assert subscription.receive(frame(state_number=6, values=(True,)), 0.2) is Reception.CHANGED
+    assert subscription.latest == frame(state_number=6, values=(True,)).message
+    assert (subscription.missed_states, subscription.ignored) == (0, {})
 
 
 @pytest.mark.parametrize(
-    ("wrong", "reason"),
+    "old",
+    [{}, {"state_number": 4, "sequence_number": 99, "values": (True,)}, {"sequence_number": 2}],
+    ids=["the same again", "an earlier state", "an earlier telling"],
+)
+def test_a_replay_is_ignored_and_does_not_keep_the_publisher_alive(
+    subscription: Subscription, old: dict[str, object]
+) -> None:
+    subscription.receive(frame(sequence_number=2), 0.0)
+    before = subscription.latest
+    assert subscription.receive(frame(**old), 1.9) is Reception.REPLAYED
+    assert subscription.latest == before
+    assert subscription.expire(2.1)
+
+
+def test_another_content_under_the_same_number_is_ignored(subscription: Subscription) -> None:
+    assert subscription.receive(frame(sequence_number=1, values=(True,)), 0.1) is Reception.CONTRADICTORY
+    later = frame(sequence_number=1, time=Timestamp(NOW_NS + 10**9))
+    assert subscription.receive(later, 0.1) is Reception.CONTRADICTORY
+
+
+@pytest.mark.parametrize(
+    ("changes", "expected"),
     [
-        (frame(8, 0, configuration_revision=4), Reception.WRONG_REVISION),
-        (frame(8, 0, data_set="A1_SEL710CFG/LLN0$DSet05"), Reception.WRONG_DATA_SET),
-        (frame(8, 0, goose_id="ANOTHER"), Reception.WRONG_DATA_SET),
-        (frame(8, 0, (True,)), Reception.WRONG_DATA_SET),
-        (frame(8, 0, simulation=True), Reception.SIMULATED),
-        (replace(frame(8, 0), simulated=True), Reception.SIMULATED),
-        (frame(8, 0, needs_commissioning=True), Reception.NEEDS_COMMISSIONING),
-        (frame(8, 0, time_allowed_to_live_ms=0), Reception.ENDLESS),
-        (replace(FRAME, application_id=6), Reception.WRONG_ADDRESS),
-        (replace(FRAME, destination=bytes.fromhex("010ccd010006")), Reception.WRONG_ADDRESS),
-        (frame(7, 1, (True, 5)), Reception.CONTRADICTORY),
+        ({"configuration_revision": 4}, Reception.WRONG_REVISION),
+        ({"simulation": True}, Reception.SIMULATED),
+        ({"needs_commissioning": True}, Reception.NEEDS_COMMISSIONING),
+        ({"data_set": "A1_SEL710CFG/LLN0$DSet05"}, Reception.WRONG_DATA_SET),
+        ({"goose_id": "other"}, Reception.WRONG_DATA_SET),
+        ({"values": (True, True)}, Reception.WRONG_DATA_SET),
+        ({"time_allowed_to_live_ms": 0}, Reception.ENDLESS),
     ],
 )
-def test_what_does_not_count_is_told_by_its_reason(
-    subscription: Subscription, wrong: GooseFrame, reason: Reception
+def test_what_is_not_as_configured_is_ignored_and_counted(
+    subscription: Subscription, changes: dict[str, object], expected: Reception
 ) -> None:
-    subscription.receive(frame(7, 0), 0)
-    assert subscription.receive(wrong, 1) is reason
-    assert subscription.ignored == {reason: 1}
-    assert subscription.latest == frame(7, 0).message
+    before = subscription.latest
+    strange = frame(**{"state_number": 6, "values": (True,), **changes})
+    assert subscription.receive(strange, 0.1) is expected
+    assert (subscription.latest, subscription.ignored) == (before, {expected: 1})
+    assert subscription.receive(frame(state_number=6), 0.2) is Reception.CHANGED
 
 
-def test_a_test_set_counts_where_it_is_asked_for() -> None:
-    subscription = Subscription(BLOCK, accept_simulated=True)
-    assert subscription.receive(replace(frame(7, 0), simulated=True), 0) is Reception.FIRST
+def test_the_simulation_bit_of_the_header_counts_too(subscription: Subscription) -> None:
+    simulated = replace(frame(state_number=6), simulated=True)
+    assert subscription.receive(simulated, 0.1) is Reception.SIMULATED
+    accepting = Subscription(BLOCK, accept_simulated=True)
+    assert accepting.receive(simulated, 0.1) is Reception.FIRST
 
 
-def test_silence_is_told_once_and_any_state_ends_it(subscription: Subscription) -> None:
-    subscription.receive(frame(7, 0), 0)
-    assert not subscription.expire(LIFE_S)
-    assert subscription.expire(LIFE_S + 0.01)
-    assert not subscription.expire(LIFE_S + 1)
-    assert not subscription.is_alive
-    assert subscription.receive(frame(1, 0), 10) is Reception.RESUMED, "the relay was restarted"
-    assert (subscription.is_alive, subscription.lost) == (True, 1)
+@pytest.mark.parametrize("other", [{"application_id": 0x3002}, {"destination": bytes(6)}])
+def test_another_address_is_ignored(subscription: Subscription, other: dict[str, object]) -> None:
+    strange = replace(frame(state_number=6), **other)  # type: ignore[arg-type] # fields by name
+    assert subscription.receive(strange, 0.1) is Reception.WRONG_ADDRESS
 
 
-def test_what_is_ignored_keeps_nobody_alive(subscription: Subscription) -> None:
-    subscription.receive(frame(7, 0), 0)
-    subscription.receive(frame(7, 0), LIFE_S - 0.1)
-    assert subscription.expire(LIFE_S + 0.01)
+def test_a_jump_of_the_state_number_is_counted(subscription: Subscription) -> None:
+    assert subscription.receive(frame(state_number=9), 0.1) is Reception.CHANGED
+    assert subscription.missed_states == 3
 
 
-def test_numbers_go_on_with_1(subscription: Subscription) -> None:
-    subscription.receive(frame(HIGHEST, HIGHEST), 0)
-    assert subscription.receive(frame(HIGHEST, 1), 1) is Reception.REPEATED
-    assert subscription.receive(frame(1, 0, (True, 5)), 2) is Reception.CHANGED
-    assert subscription.missed_states == 0
-    assert subscription.receive(frame(HIGHEST, 2), 2.5) is Reception.REPLAYED
+def test_both_numbers_go_on_with_one_after_the_highest() -> None:
+    found = Subscription(BLOCK)
+    found.receive(frame(state_number=HIGHEST, sequence_number=HIGHEST), 0.0)
+    assert found.receive(frame(state_number=HIGHEST, sequence_number=1), 0.1) is Reception.REPEATED
+    assert found.receive(frame(state_number=1, sequence_number=0), 0.2) is Reception.CHANGED
+    assert found.receive(frame(state_number=HIGHEST, sequence_number=2), 0.3) is Reception.REPLAYED
+    assert found.missed_states == 0
+
+
+def test_a_publisher_that_is_silent_for_longer_than_it_said_is_lost_once(subscription: Subscription) -> None:
+    assert subscription.is_alive
+    assert not subscription.expire(2.0)
+    assert subscription.expire(2.001)
+    assert not subscription.expire(3.0)
+    assert (subscription.is_alive, subscription.lost) == (False, 1)
+
+
+def test_a_publisher_that_begins_anew_is_taken_only_after_its_time_has_run_out(
+    subscription: Subscription,
+) -> None:
+    anew = frame(state_number=1, time=Timestamp(NOW_NS + 10**9))
+    assert subscription.receive(anew, 1.9) is Reception.REPLAYED
+    assert subscription.receive(anew, 2.1) is Reception.RESUMED
+    assert subscription.lost == 1
+
+
+@given(st.integers(0, HIGHEST))
+def test_the_number_after_a_number_is_one_ahead(number: int) -> None:
+    assert ahead(number, following(number)) == 1
+    assert ahead(following(number), number) <= -1 or number == 0
+    assert ahead(number, number) == 0
+
+
+@given(st.lists(st.tuples(frames, st.floats(0, 100)), max_size=10))
+def test_frames_of_strangers_change_nothing(received: list[tuple[GooseFrame, float]]) -> None:
+    found = Subscription(BLOCK)
+    found.receive(frame(time_allowed_to_live_ms=10**6), 0.0)
+    for strange, now_s in received:
+        assert not found.receive(strange, now_s).counts
+    assert found.latest == frame(time_allowed_to_live_ms=10**6).message
