@@ -16,6 +16,7 @@ from core.units import NANOSECONDS_PER_DAY, NANOSECONDS_PER_SECOND
 from service.storage import Repository, connect, migrate
 from service.storage.models import Base
 from service.storage.states import AlarmKind, LinkState
+from testing.service.links import set_link_state
 from testing.service.plants import fault as diagnosis_of
 
 HOUR_NS = 3600 * NANOSECONDS_PER_SECOND
@@ -69,7 +70,7 @@ def fill(url: str, plan: Plan, progress: Progress = lambda _line: None) -> None:
     now_ns = time.time_ns()
     repository.settle_alarms(now_ns=now_ns)
     for number in range(plan.motors):
-        repository.set_link_state(relay_name(number), LinkState.UP, None, now_ns=now_ns)
+        set_link_state(repository, relay_name(number), LinkState.UP, None, now_ns=now_ns)
     for number in range(0, plan.motors, 25):
         relay = relay_name(number)
         repository.raise_alarm(relay, AlarmKind.FILE_REFUSED, "HR_1.CFG", "too short", now_ns=now_ns)

@@ -14,6 +14,7 @@ import httpx
 from statorwatch_client.errors import ServiceError, refusal, without_credentials
 from statorwatch_client.operations import Operations
 from statorwatch_client.requests import (
+    BROKEN,
     FILE_TIMEOUT_S,
     TIMEOUT_S,
     Request,
@@ -24,8 +25,6 @@ from statorwatch_client.requests import (
     name_of_file,
     trust,
 )
-
-BROKEN = (httpx.TransportError, httpx.UnsupportedProtocol, httpx.DecodingError)
 
 
 class Download:

@@ -22,6 +22,9 @@ Document: TypeAlias = Mapping[str, object]
 
 Value: TypeAlias = str | float | date | Sequence[str] | None
 
+BROKEN = (httpx.TransportError, httpx.UnsupportedProtocol, httpx.DecodingError)
+"""By these errors of httpx nobody answers, or the answer breaks off."""
+
 TIMEOUT_S = 30.0
 FILE_TIMEOUT_S = 600.0
 """An Excel file begins to come when its last row is written."""

@@ -39,6 +39,7 @@ from service.storage.states import AlarmKind, LinkState
 from testing.service.conditions import DRIFTING, HEALTHY, tell
 from testing.service.database import make_database
 from testing.service.job_runner import RUNNER, register_runner
+from testing.service.links import set_link_state
 from testing.service.observations import records_of_a_motor
 from testing.service.plants import fault, healthy, undiagnosable
 from testing.service.rotor_and_supply import ECCENTRIC_ROTOR, SOUND_ROTOR, SUPPLY, SWINGING_LOAD
@@ -249,9 +250,9 @@ def _seed_relays(seeding: _Seeding) -> None:
     repository, now_ns = seeding.repository, seeding.now_ns
     for relay in seeding.plant.relays:
         began_ns = now_ns - 30 * NANOSECONDS_PER_DAY
-        repository.set_link_state(relay.name, LinkState.UP, None, now_ns=began_ns)
+        set_link_state(repository, relay.name, LinkState.UP, None, now_ns=began_ns)
     down = next(one.relay for one in seeding.plant.motors if one.name == STALE)
-    repository.set_link_state(down, LinkState.DOWN, "no answer: connection refused", now_ns=now_ns - HOUR_NS)
+    set_link_state(repository, down, LinkState.DOWN, "no answer: connection refused", now_ns=now_ns - HOUR_NS)
     first = seeding.plant.relays[0].name
     acquisition = {
         "asked": True,

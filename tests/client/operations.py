@@ -125,9 +125,7 @@ class Writer:
         kind = self._kind(schema)
         item = self._item_of_page(schema)
         if item is not None:
-            if (
-                method != "GET"
-            ):  # what changes something is sent at once, not when somebody looks at the answer
+            if method != "GET":  # what changes something is sent at once, not when its answer is looked at
                 loop = (
                     f"[one async for one in self._items({request})]"
                     if self._a

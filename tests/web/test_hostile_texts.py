@@ -21,6 +21,7 @@ from testing.service.conditions import DRIFTING, FAULT, tell
 from testing.service.database import make_database
 from testing.service.diagnosed import add_diagnosed
 from testing.service.job_runner import register_runner
+from testing.service.links import set_link_state
 from testing.service.plants import fault, two_motor_plant
 from testing.service.real_recordings import add_recording, running_record
 from testing.web.pages import address_of, is_page, page_routes
@@ -84,7 +85,7 @@ def hostile(tmp_path_factory: pytest.TempPathFactory, browser: Browser) -> Itera
         )
         tell(repository, condition, now_ns=now_ns)
         repository.add_event(name, Event(now_ns, EventKind.NOTE, name), by=by, told_by=name, now_ns=now_ns)
-        repository.set_link_state(name, LinkState.DOWN, name, now_ns=now_ns)
+        set_link_state(repository, name, LinkState.DOWN, name, now_ns=now_ns)
         alarm = repository.raise_alarm(name, AlarmKind.FILE_REFUSED, name, name, now_ns=now_ns)
         repository.acknowledge_alarm(alarm.id, by=by, comment=name, now_ns=now_ns)
         difference = {"kind": name, "expected": name, "found": name}

@@ -7,6 +7,7 @@ from playwright.sync_api import APIResponse, Route, expect
 
 from service.storage.records import Role
 from service.storage.states import AlarmKind, LinkState
+from testing.service.links import set_link_state
 from testing.waiting import wait_until
 from testing.web.followers import until_followed
 from testing.web.seeding import FAULTY, acknowledge_all
@@ -106,7 +107,7 @@ def test_what_changes_while_the_fleet_is_asked_for_is_seen_too(site: Site) -> No
     expect(calls).to_have_count(1)
     held = hold_the_first_answer(page, "sse:fleet")
     relay = site.repository.relays(limit=1).items[0].name
-    site.repository.set_link_state(relay, LinkState.DOWN, "gone", now_ns=time.time_ns())
+    set_link_state(site.repository, relay, LinkState.DOWN, "gone", now_ns=time.time_ns())
     page.page.wait_for_function("() => window.told >= 1")
     wait_until(lambda: page.page.evaluate("() => true") and held, "an answer")
     acknowledge_all(site.repository, FAULTY)

@@ -221,10 +221,7 @@ class Gateway:
             gateway=self._identity.id,
             visit_marks=self._visit_marks,
             on_sample=self._batches.add_sample,
-            on_note=self._batches.add_note,
-            on_findings=self._batches.add_findings,
-            on_clock=self._batches.add_clock,
-            on_position=self._batches.add_position,
+            notes=self._batches,
             reported=motor,
         )
         thread = Thread(target=session.run, name=f"relay-{relay}", daemon=True)

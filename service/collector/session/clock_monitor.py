@@ -9,7 +9,7 @@ use here, because nobody knows how long a report waited.
 
 import time
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from core.units import NANOSECONDS_PER_SECOND
@@ -22,6 +22,7 @@ from mms import (
     TemporarilyUnavailable,
     Timestamp,
 )
+from service.collector.session.notes import Notes
 from service.plant import Measurand
 from service.storage import Repository
 from service.storage.records import ClockNote, ClockReading
@@ -82,16 +83,14 @@ class _StampRead:
 class ClockMonitor:
     """Measures a relay's clock now and then, from the stamps of its values. Used by its session alone."""
 
-    def __init__(
-        self, relay: str, repository: Repository, *, on_clock: Callable[[ClockNote], None] | None = None
-    ) -> None:
+    def __init__(self, relay: str, repository: Repository, notes: Notes) -> None:
         """Begin without a reading.
 
-        on_clock: takes readings that nothing waits for; None where they are written at once.
+        notes: takes readings that nothing waits for.
         """
         self._relay = relay
         self._repository = repository
-        self._on_clock = on_clock or (lambda note: repository.note_clock(note.ied, note.reading))
+        self._notes = notes
         self._stamps: deque[str] = deque()
         self._before: _StampRead | None = None
         self._due_s = 0.0
@@ -114,9 +113,8 @@ class ClockMonitor:
 
         It is written at once: the record that the change brings about is stored with it.
         """
-        self._repository.note_clock(
-            self._relay, clock_reading(stamp, asked_ns=asked_ns, answered_ns=answered_ns)
-        )
+        reading = clock_reading(stamp, asked_ns=asked_ns, answered_ns=answered_ns)
+        self._repository.note_clocks((ClockNote(self._relay, reading),))
         self._has_read()
 
     def measure_if_due(self, client: Client) -> None:
@@ -132,7 +130,7 @@ class ClockMonitor:
             self._stamps.rotate(-1)  # another value may have one
         elif before is not None and before.stamp != now.stamp:
             reading = _between(*self._around_next_change(client, before, now))
-            self._on_clock(ClockNote(self._relay, reading))
+            self._notes.add_clock(ClockNote(self._relay, reading))
             self._has_read()
 
     def _has_read(self) -> None:

@@ -5,7 +5,7 @@ connection.
 """
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict
 
 import structlog
@@ -18,6 +18,7 @@ from mms import (
 from service.collector.records.event_folders import ROOT
 from service.collector.records.listing import RefusedFile
 from service.collector.session.browsing import BUSY, REFUSALS, browse
+from service.collector.session.notes import Notes
 from service.collector.session.relay_alarms import RelayAlarms
 from service.plant import (
     Acquisition,
@@ -38,15 +39,13 @@ NOT_BROWSED = "the relay does not tell what it offers: its SCL is taken at its w
 class Discovery:
     """What is known of one relay. Used by that relay's session alone."""
 
-    def __init__(
-        self, relay: Relay, alarms: RelayAlarms, on_findings: Callable[[RelayFindings], None]
-    ) -> None:
+    def __init__(self, relay: Relay, alarms: RelayAlarms, notes: Notes) -> None:
         """Know nothing of the relay yet.
 
-        on_findings: stores what is found, or sees to it.
+        notes: takes what is found.
         """
         self._relay = relay
-        self._on_findings = on_findings
+        self._notes = notes
         self._alarms = alarms
         self._acquisition = acquisition_from_scl(relay)
         self._control_model: str | None = None
@@ -101,7 +100,7 @@ class Discovery:
             ignored_in_all=ignored_in_all,
         )
         if findings != self._saved:
-            self._on_findings(findings)
+            self._notes.add_findings(findings)
             self._saved = findings
 
     def _acquisition_document(

@@ -1,15 +1,14 @@
 """The state, the figures and the history of the link to one relay, kept in the database and the log."""
 
 import time
-from collections.abc import Callable
 from dataclasses import replace
 
 import structlog
 from sqlalchemy.exc import SQLAlchemyError
 
 from service.collector.records.pull import DailyAllowance
+from service.collector.session.notes import Notes
 from service.collector.session.session_policy import SESSION_POLICY
-from service.storage import Repository
 from service.storage.records import LinkNote, LinkTraffic
 from service.storage.states import LinkState
 
@@ -25,21 +24,20 @@ class Link:
     def __init__(
         self,
         relay: str,
-        repository: Repository,
+        notes: Notes,
         allowance: DailyAllowance,
         *,
-        on_note: Callable[[LinkNote], None] | None = None,
         reminder_s: float = SESSION_POLICY.reminder_s,
     ) -> None:
         """Begin with a link of which nothing is known yet.
 
-        on_note: takes what goes over the link and how it is; None where that is written at once.
+        notes: takes what goes over the link and how it is.
         reminder_s: a link that stays down for the same reason is logged this often.
         """
         self._relay = relay
         self._allowance = allowance
         self._unwritten = LinkTraffic()
-        self._on_note = on_note or (lambda note: repository.note_links((note,)))
+        self._notes = notes
         self._reminder_s = reminder_s
         self._written_s: float | None = None
         self._told_ns = 0
@@ -103,7 +101,7 @@ class Link:
         self, round_trip_s: float | None, state: LinkState | None = None, reason: str | None = None
     ) -> None:
         """Write the figures, and the state where there is a new one. Raises SQLAlchemyError."""
-        self._on_note(
+        self._notes.add_note(
             LinkNote(
                 self._relay,
                 self._told_ns,

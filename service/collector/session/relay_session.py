@@ -22,6 +22,7 @@ from service.collector.session.clock_monitor import ClockMonitor
 from service.collector.session.discovery import Discovery
 from service.collector.session.link import Link
 from service.collector.session.metering import Metering
+from service.collector.session.notes import Notes, WrittenAtOnce
 from service.collector.session.protocol_fault_counter import ProtocolFaultCounter
 from service.collector.session.quarantine import QuarantinePolicy
 from service.collector.session.relay_alarms import RelayAlarms
@@ -35,7 +36,7 @@ from service.configuration.settings import Settings
 from service.plant import Relay
 from service.recording_store.store import RecordingStore
 from service.storage import LeaseLostError, Repository
-from service.storage.records import ClockNote, LinkNote, RelayFindings, ReportPosition, Sample
+from service.storage.records import Sample
 from service.timing.backoff import RestartDelay
 from service.timing.database_silence import database_trouble
 
@@ -62,10 +63,7 @@ class RelaySession:
         gateway: str | None = None,
         visit_marks: VisitMarks | None = None,
         on_sample: Callable[[Sample], None] | None = None,
-        on_note: Callable[[LinkNote], None] | None = None,
-        on_findings: Callable[[RelayFindings], None] | None = None,
-        on_clock: Callable[[ClockNote], None] | None = None,
-        on_position: Callable[[ReportPosition], None] | None = None,
+        notes: Notes | None = None,
         reported: Motor | None = None,
         policy: SessionPolicy = SESSION_POLICY,
     ) -> None:
@@ -75,9 +73,7 @@ class RelaySession:
         None where relays are not shared, and each round looks whether somebody does.
         visit_marks: where a visit is marked, for whoever finds the process dead; None where nobody looks.
         on_sample: takes what the relay measures; None where nobody wants it.
-        on_note, on_findings, on_clock, on_position: take what goes over the link and how it is, what is found
-        at the relay, readings of its clock, and where to resume its reports; None where that is written at
-        once.
+        notes: takes what the session has to say all the time; None where that is written at once.
         reported: the motor that the relay's text reports tell of; None where nobody wants them.
         """
         self._relay = relay
@@ -85,11 +81,12 @@ class RelaySession:
         self._settings = settings
         self._policy = policy
         allowance = self._allowance = DailyAllowance(settings.max_relay_bytes_per_day)
-        self._link = Link(relay.name, repository, allowance, on_note=on_note, reminder_s=policy.reminder_s)
+        notes = WrittenAtOnce(repository) if notes is None else notes
+        self._link = Link(relay.name, notes, allowance, reminder_s=policy.reminder_s)
         alarms = RelayAlarms(relay.name, repository, most=policy.most_alarms)
-        self._discovery = Discovery(relay, alarms, on_findings or repository.note_findings)
+        self._discovery = Discovery(relay, alarms, notes)
         self._subscription = ReportSubscription(
-            relay.name, repository, self._link, retry_s=policy.report_retry_s, on_position=on_position
+            relay.name, repository, self._link, notes, retry_s=policy.report_retry_s
         )
         self._folders = EventFolders(
             relay.name,
@@ -109,7 +106,7 @@ class RelaySession:
             on_bytes=self._link.received,
             policy=policy.records,
         )
-        self._clock = ClockMonitor(relay.name, repository, on_clock=on_clock)
+        self._clock = ClockMonitor(relay.name, repository, notes)
         self._stopping = Event()
         self._is_woken = gateway is not None
         self._triggers = TriggerQueue(

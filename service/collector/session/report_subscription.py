@@ -6,7 +6,6 @@ again now and then.
 """
 
 import time
-from collections.abc import Callable
 from queue import Empty, SimpleQueue
 from threading import Event
 
@@ -26,6 +25,7 @@ from mms import (
     TemporarilyUnavailable,
 )
 from service.collector.session.link import Link
+from service.collector.session.notes import Notes
 from service.collector.session.session_policy import SESSION_POLICY
 from service.plant import Acquisition
 from service.storage import Repository
@@ -121,20 +121,20 @@ class ReportSubscription:
         relay: str,
         repository: Repository,
         link: Link,
+        notes: Notes,
         *,
         retry_s: float = SESSION_POLICY.report_retry_s,
-        on_position: Callable[[ReportPosition], None] | None = None,
     ) -> None:
         """Begin without a block; `begin` subscribes.
 
         retry_s: between attempts to get a block, where all were refused.
-        on_position: takes where to resume; None where that is written at once.
+        notes: takes where to resume.
         """
         self._relay = relay
         self._repository = repository
         self._link = link
         self._retry_s = retry_s
-        self._on_position = on_position or (lambda each: repository.save_report_positions((each,)))
+        self._notes = notes
         self._acquisition: Acquisition | None = None
         self._continuity = ReportContinuity(None)
         self._queue = ReportQueue(Event())
@@ -191,7 +191,7 @@ class ReportSubscription:
         After a crash the relay repeats every report from the saved EntryID on.
         """
         if self._unsaved_entry_id is not None:
-            self._on_position(ReportPosition(self._relay, self._unsaved_entry_id, self.report_control))
+            self._notes.add_position(ReportPosition(self._relay, self._unsaved_entry_id, self.report_control))
             self._unsaved_entry_id = None
 
     def _subscribe(self, client: Client) -> None:

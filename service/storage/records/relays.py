@@ -96,6 +96,11 @@ class LinkNote:
     state: LinkState | None = None
     reason: str | None = None
 
+    @property
+    def is_answer(self) -> bool:
+        """Tell whether the relay answered at `now_ns`."""
+        return self.state in (None, LinkState.UP)
+
 
 @dataclass(frozen=True, slots=True)
 class ClockNote:

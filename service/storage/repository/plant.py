@@ -10,7 +10,6 @@ from service.storage.models import ConditionRow, IedRow, MotorRow, SiteRow, Unob
 from service.storage.records import (
     SERVICE,
     ClockNote,
-    ClockReading,
     Cursor,
     IedEntry,
     MotorEntry,
@@ -98,13 +97,6 @@ class PlantRows(Sessions):
                 if session.get(ConditionRow, motor.name) is None:
                     session.add(new_condition(motor.name))
 
-    def note_clock(self, relay: str, reading: ClockReading) -> None:
-        """Note how far a relay's clock is from ours. Raises NotFoundError."""
-        with self._write() as session:
-            row = found(session, IedRow, relay, "relay")
-            row.clock_offset_ns, row.clock_uncertainty_ns = reading.offset_ns, reading.uncertainty_ns
-            row.clock_quality, row.clock_measured_ns = reading.quality, reading.measured_ns
-
     def note_clocks(self, notes: Sequence[ClockNote]) -> None:
         """Note readings of relays' clocks. An unknown relay is passed over."""
         if not notes:
@@ -133,12 +125,6 @@ class PlantRows(Sessions):
             row = found(session, IedRow, relay, "relay")
             unknown = report_control is None or row.entry_report_control is None
             return row.entry_id if unknown or row.entry_report_control == report_control else None
-
-    def save_entry_id(self, relay: str, entry_id: bytes, report_control: str | None = None) -> None:
-        """Save where to resume the buffered report of a block. Raises NotFoundError."""
-        with self._write() as session:
-            row = found(session, IedRow, relay, "relay")
-            row.entry_id, row.entry_report_control = entry_id, report_control
 
     def save_report_positions(self, positions: Sequence[ReportPosition]) -> None:
         """Save where to resume the buffered reports of blocks. An unknown relay is passed over."""

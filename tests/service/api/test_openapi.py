@@ -25,6 +25,7 @@ from testing.service.accounts import token_of
 from testing.service.conditions import FAULT, tell
 from testing.service.database import make_database
 from testing.service.job_runner import RUNNER, register_runner
+from testing.service.links import set_link_state
 from testing.service.observations import OBSERVATION
 from testing.service.plants import NOW_NS, fault, two_motor_plant
 from testing.service.small_record import CFG, DAT
@@ -74,7 +75,7 @@ def documented_api(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Api]:
         runner=RUNNER,
         observation=OBSERVATION,
     )
-    repository.set_link_state("A1_SEL710", LinkState.DOWN, "refused", now_ns=NOW_NS)
+    set_link_state(repository, "A1_SEL710", LinkState.DOWN, "refused", now_ns=NOW_NS)
     repository.register_gateway("here/0", host="here", process_id=1, now_ns=NOW_NS)
     repository.share_relays("here/0", ["A1_SEL710"], most=1, problem=None)
     repository.add_samples([Sample("PUMP-A1", NOW_NS, {"ia_A": 1.0})])

@@ -11,6 +11,7 @@ from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from service.storage.states import AlarmKind, LinkState
 from testing.service.job_runner import RUNNER
+from testing.service.links import set_link_state
 from testing.service.plants import NOW_NS, fault, motor, two_motor_plant
 
 Asked = Callable[[str], Sequence[str]]
@@ -81,7 +82,7 @@ def test_the_metrics_read_no_table_that_grows(
 def test_the_metrics_leave_out_relays_that_left_the_plant(
     client: httpx.Client, repository: Repository
 ) -> None:
-    repository.set_link_state("A2_SEL710", LinkState.DOWN, "refused", now_ns=NOW_NS)
+    set_link_state(repository, "A2_SEL710", LinkState.DOWN, "refused", now_ns=NOW_NS)
     for ied in ("A1_SEL710", "A2_SEL710"):
         repository.raise_alarm(ied, AlarmKind.DAILY_LIMIT, "", "full", now_ns=NOW_NS)
     plant = two_motor_plant()

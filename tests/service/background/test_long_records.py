@@ -12,6 +12,7 @@ from service.storage import Repository
 from service.storage.models import RecordingRequestRow, RecordingRow
 from service.storage.records import RecordingRequest, Sample
 from service.storage.states import LinkState, RecordingSource, RecordingState
+from testing.service.links import set_link_state
 from testing.service.plants import NOW_NS, SECOND_NS, two_motor_plant
 from tests.service.fixtures import database_url, engine, repository
 
@@ -71,7 +72,7 @@ def joined(engine: Engine, request: RecordingRequest) -> None:
 def ready(repository: Repository, engine: Engine) -> Repository:
     """Both links have been up for an hour, and the length of both relays' records is known."""
     for motor, relay in RELAYS.items():
-        repository.set_link_state(relay, LinkState.UP, None, now_ns=NOW_NS - HOUR_NS)
+        set_link_state(repository, relay, LinkState.UP, None, now_ns=NOW_NS - HOUR_NS)
         with Session(engine) as session:
             session.add(
                 RecordingRow(
@@ -158,15 +159,15 @@ def test_a_motor_of_which_nothing_is_measured_is_not_recorded_for_long(ready: Re
 
 @pytest.mark.parametrize("state", [LinkState.DOWN, LinkState.UP])
 def test_a_link_that_is_down_or_was_lately_is_spared(ready: Repository, state: LinkState) -> None:
-    ready.set_link_state(RELAYS[PUMP], LinkState.DOWN, "no answer", now_ns=NOW_NS - 60 * SECOND_NS)
-    ready.set_link_state(RELAYS[PUMP], state, "no answer", now_ns=NOW_NS - 30 * SECOND_NS)
+    set_link_state(ready, RELAYS[PUMP], LinkState.DOWN, "no answer", now_ns=NOW_NS - 60 * SECOND_NS)
+    set_link_state(ready, RELAYS[PUMP], state, "no answer", now_ns=NOW_NS - 30 * SECOND_NS)
     run_steadily(ready, NOW_NS)
     recorder(ready).request_due(NOW_NS)
     assert [one.motor for one in asked(ready)] == [FAN]
 
 
 def test_a_relay_whose_records_were_never_read_is_not_asked(repository: Repository) -> None:
-    repository.set_link_state(RELAYS[PUMP], LinkState.UP, None, now_ns=NOW_NS - HOUR_NS)
+    set_link_state(repository, RELAYS[PUMP], LinkState.UP, None, now_ns=NOW_NS - HOUR_NS)
     run_steadily(repository, NOW_NS)
     recorder(repository).request_due(NOW_NS)
     assert asked(repository) == []

@@ -26,6 +26,7 @@ from service.storage import Repository
 from service.storage.states import LinkState
 from testing.service.conditions import DRIFTING, FAULT, HEALTHY, tell
 from testing.service.job_runner import RUNNER
+from testing.service.links import set_link_state
 from testing.service.observations import HOUR_NS
 from testing.service.plants import NOW_NS, fault
 from testing.service.rotor_and_supply import BROKEN_ROTOR, ExaminedRecordings
@@ -78,7 +79,7 @@ def test_80_columns_hold_the_list_of_motors(
     client: httpx.Client, repository: Repository, condition: Condition
 ) -> None:
     tell(repository, condition)
-    repository.set_link_state("A1_SEL710", LinkState.QUARANTINED, "it lied " * 20, now_ns=NOW_NS)
+    set_link_state(repository, "A1_SEL710", LinkState.QUARANTINED, "it lied " * 20, now_ns=NOW_NS)
     motors = client.get("/api/v1/motors", params={"health": "true"}).json()["items"]
     healths = [{**motor["health"], "motor": f"COMPRESSOR-{motor['ied'][:2]}"} for motor in motors]
     console = Console(file=StringIO(), width=80)

@@ -17,6 +17,7 @@ from service.storage import Repository
 from service.storage.records import RelayFindings
 from service.storage.states import LinkState
 from service.timing.backoff import Backoff
+from testing.service.links import set_link_state
 from testing.service.plants import NOW_NS, fault, two_motor_plant
 from tests.service.api.relays.test_relays import ACQUISITION
 from tests.service.api.serving import serving
@@ -28,8 +29,8 @@ __all__ = ["database_url", "engine", "repository"]
 def test_the_motors_whose_relay_is_down_say_why(
     repository: Repository, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    repository.set_link_state("A1_SEL710", LinkState.DOWN, "10.0.0.7:102: connection refused", now_ns=NOW_NS)
-    repository.set_link_state("A2_SEL710", LinkState.UP, None, now_ns=NOW_NS)
+    set_link_state(repository, "A1_SEL710", LinkState.DOWN, "10.0.0.7:102: connection refused", now_ns=NOW_NS)
+    set_link_state(repository, "A2_SEL710", LinkState.UP, None, now_ns=NOW_NS)
     app = create_app(
         ApiContext(Settings(data_directory=tmp_path), repository, FolderStore(tmp_path / "recordings"))
     )

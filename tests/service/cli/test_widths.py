@@ -17,6 +17,7 @@ from service.storage import Repository, connect
 from service.storage.states import AlarmKind, LinkState
 from testing.service.conditions import FAULT, tell
 from testing.service.job_runner import RUNNER, register_runner
+from testing.service.links import set_link_state
 from testing.service.plants import NOW_NS, fault, motor, relay
 from tests.service.api.serving import serving
 from tests.service.fixtures import database_url
@@ -58,7 +59,7 @@ def client(database_url: str, tmp_path: Path) -> Iterator[httpx.Client]:
     claimed = repository.claim_job(now_ns=NOW_NS, runner=RUNNER)
     assert claimed is not None
     repository.finish_job(claimed.job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER)
-    repository.set_link_state(relays[0].name, LinkState.DOWN, REASON, now_ns=NOW_NS)
+    set_link_state(repository, relays[0].name, LinkState.DOWN, REASON, now_ns=NOW_NS)
     repository.raise_alarm(relays[0].name, AlarmKind.FILE_REFUSED, "X.CFG", REASON, now_ns=NOW_NS)
     tell(repository, replace(FAULT, motor=LONG))
     with serving(create_app(ApiContext(Settings(data_directory=tmp_path), repository, store))) as client:

@@ -17,6 +17,7 @@ from testing.service.conditions import DRIFTING, FAULT, HEALTHY, tell
 from testing.service.database import make_database
 from testing.service.diagnosed import add_diagnosed
 from testing.service.job_runner import register_runner
+from testing.service.links import set_link_state
 from testing.service.observations import HOUR_NS, records_of_a_motor
 from testing.service.plants import NOW_NS, fault, undiagnosable
 from testing.web.seeding import FAULTY, STALE, STANDING, WATCHED, WELL, demo_plant
@@ -56,6 +57,6 @@ def seeded(tmp_path_factory: pytest.TempPathFactory) -> Iterator[ReportSource]:
     down = next(one.relay for one in plant.motors if one.name == STALE)
     for relay in plant.relays:
         state = LinkState.DOWN if relay.name == down else LinkState.UP
-        repository.set_link_state(relay.name, state, None, now_ns=NOW_NS)
+        set_link_state(repository, relay.name, state, None, now_ns=NOW_NS)
     yield ReportSource(repository)
     engine.dispose()

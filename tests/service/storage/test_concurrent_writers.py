@@ -15,6 +15,7 @@ from service.storage.engine import BUSY_TIMEOUT_S
 from service.storage.records import RemoteRecord
 from service.storage.states import LinkState
 from testing.service.job_runner import RUNNER, register_runner
+from testing.service.links import set_link_state
 from testing.service.plants import NOW_NS, two_motor_plant
 
 ROUNDS = 60
@@ -69,7 +70,7 @@ def test_a_waiting_writer_goes_on_as_soon_as_the_other_is_done(
             written_s: list[float] = []
 
             def write(written_s: list[float] = written_s) -> None:
-                repository.set_link_state("A1_SEL710", LinkState.UP, None, now_ns=NOW_NS)
+                set_link_state(repository, "A1_SEL710", LinkState.UP, None, now_ns=NOW_NS)
                 written_s.append(time.monotonic())
 
             writer = Thread(target=write)
@@ -91,7 +92,7 @@ def test_a_renewal_goes_ahead_of_the_threads_that_wait(database_url: str, reposi
     order: list[str] = []
 
     def note() -> None:
-        repository.set_link_state("A1_SEL710", LinkState.UP, None, now_ns=NOW_NS)
+        set_link_state(repository, "A1_SEL710", LinkState.UP, None, now_ns=NOW_NS)
         order.append("note")
 
     def renew() -> None:

@@ -7,9 +7,11 @@ from sqlalchemy.orm import Session
 from service.plant import Bus, Schedule
 from service.storage import NotFoundError, Repository
 from service.storage.models import AlarmRow, LinkChangeRow
+from service.storage.records import ReportPosition
 from service.storage.repository.alarms.causes import MOST_CLEARED
 from service.storage.repository.relays.links import MOST_CHANGES
 from service.storage.states import AlarmKind, AlarmPriority, AlarmState, LinkState
+from testing.service.links import set_link_state
 from testing.service.plants import NOW_NS, two_motor_plant
 
 RELAY = "A1_SEL710"
@@ -20,7 +22,7 @@ def test_the_tables_follow_the_plant(repository: Repository) -> None:
     smaller = replace(
         plant, relays=(replace(plant.relays[0], host="10.0.0.7", port=102),), motors=plant.motors[:1]
     )
-    repository.save_entry_id("A1_SEL710", b"\x01\x02")
+    repository.save_report_positions([ReportPosition("A1_SEL710", b"\x01\x02", None)])
     repository.sync_plant(smaller)
 
     assert [site.name for site in repository.sites(limit=10).items] == ["FACTORY_A"]
@@ -38,7 +40,7 @@ def test_only_so_much_history_is_kept(repository: Repository, engine: Engine) ->
     fill_history(engine)
     for number in range(3):
         now_ns = NOW_NS + number
-        repository.set_link_state(RELAY, LinkState.DOWN, f"reason {number}", now_ns=now_ns)
+        set_link_state(repository, RELAY, LinkState.DOWN, f"reason {number}", now_ns=now_ns)
         alarm = repository.raise_alarm(RELAY, AlarmKind.FILE_REFUSED, f"file {number}", "bad", now_ns=now_ns)
         repository.clear_alarms(RELAY, [alarm.id], now_ns=now_ns)
     repository.raise_alarm(RELAY, AlarmKind.FILE_REFUSED, "stands", "bad", now_ns=NOW_NS)
@@ -71,11 +73,11 @@ def fill_history(engine: Engine) -> None:
 
 def test_links_change_state_with_a_reason(repository: Repository) -> None:
     assert repository.relay("A1_SEL710").link_state is LinkState.UNKNOWN
-    repository.set_link_state("A1_SEL710", LinkState.UP, None, now_ns=NOW_NS)
-    repository.set_link_state("A1_SEL710", LinkState.UP, None, now_ns=NOW_NS + 1)
+    set_link_state(repository, "A1_SEL710", LinkState.UP, None, now_ns=NOW_NS)
+    set_link_state(repository, "A1_SEL710", LinkState.UP, None, now_ns=NOW_NS + 1)
     up = repository.relay("A1_SEL710")
     assert (up.link_changed_ns, up.last_success_ns) == (NOW_NS, NOW_NS + 1)
-    repository.set_link_state("A1_SEL710", LinkState.DOWN, "connection refused", now_ns=NOW_NS + 2)
+    set_link_state(repository, "A1_SEL710", LinkState.DOWN, "connection refused", now_ns=NOW_NS + 2)
     down = repository.relay("A1_SEL710")
     assert (down.link_reason, down.link_changed_ns, down.last_success_ns) == (
         "connection refused",
@@ -85,7 +87,7 @@ def test_links_change_state_with_a_reason(repository: Repository) -> None:
     repository.reset_links(now_ns=NOW_NS + 3)
     assert repository.relay("A1_SEL710").link_state is LinkState.UNKNOWN
     with pytest.raises(NotFoundError):
-        repository.set_link_state("X", LinkState.UP, None, now_ns=NOW_NS)
+        set_link_state(repository, "X", LinkState.UP, None, now_ns=NOW_NS)
 
 
 def test_a_motor_without_a_schedule_has_that_of_its_bus(repository: Repository) -> None:

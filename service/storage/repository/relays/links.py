@@ -40,27 +40,6 @@ _FIGURES = (
 
 
 class LinkRows(Sessions):
-    def set_link_state(
-        self,
-        relay: str,
-        state: LinkState,
-        reason: str | None,
-        *,
-        now_ns: int,
-        traffic: LinkTraffic | None = None,
-        round_trip_s: float | None = None,
-        day_bytes: tuple[int, int] | None = None,
-    ) -> None:
-        """Note whether a relay answers and why not, and what went over its link since the last call.
-
-        day_bytes: a UTC day (days since 1970) and all that counts against its limit. Raises NotFoundError.
-        """
-        with self._write() as session:
-            row = found(session, IedRow, relay, "relay", lock=True)
-            _set_state(session, row, state, reason, now_ns)
-            if traffic is not None:
-                _add(session, relay, traffic, round_trip_s, day_bytes)
-
     def note_links(self, notes: Sequence[LinkNote]) -> None:
         """Add to the figures of links, and set the states that notes tell, in their order.
 
@@ -72,12 +51,11 @@ class LinkRows(Sessions):
         with self._write() as session:
             for note in notes:
                 if note.state is not None:
-                    _note_state(session, note, note.state)
-            stay_up = [note for note in notes if note.state is None]
-            if not stay_up:
-                return
+                    _set_state(session, note, note.state)
             session.flush()
-            session.connection().execute(_ANSWERED, [{"of": note.ied, "at": note.now_ns} for note in stay_up])
+            answered = [{"of": note.ied, "at": note.now_ns} for note in notes if note.is_answer]
+            if answered:
+                session.connection().execute(_ANSWERED, answered)
             session.connection().execute(
                 _FIGURES,
                 [
@@ -88,7 +66,7 @@ class LinkRows(Sessions):
                         "new_day_bytes": note.day_bytes,
                         **{f"more_{name}": value for name, value in asdict(note.traffic).items()},
                     }
-                    for note in stay_up
+                    for note in notes
                 ],
             )
 
@@ -129,17 +107,13 @@ class LinkRows(Sessions):
             return tuple(LinkFigures(*row) for row in session.execute(query))
 
 
-def _note_state(session: Session, note: LinkNote, state: LinkState) -> None:
+def _set_state(session: Session, note: LinkNote, state: LinkState) -> None:
     row = found(session, IedRow, note.ied, "relay", lock=True)
     if row.link_changed_ns is None or row.link_changed_ns <= note.now_ns:
-        _set_state(session, row, state, note.reason, note.now_ns)
-    _add(session, note.ied, note.traffic, note.round_trip_s, (note.day, note.day_bytes))
-
-
-def _set_state(session: Session, row: IedRow, state: LinkState, reason: str | None, now_ns: int) -> None:
-    change_link(session, row, state, reason, now_ns)
-    if state is LinkState.UP:
-        row.last_success_ns = now_ns
+        change_link(session, row, state, note.reason, note.now_ns)
+    if session.get(LinkFiguresRow, note.ied) is None:
+        zeros = {field.name: 0 for field in fields(LinkTraffic)}
+        session.add(LinkFiguresRow(ied=note.ied, day=note.day, day_bytes=0, **zeros))
 
 
 def change_link(session: Session, row: IedRow, state: LinkState, reason: str | None, now_ns: int) -> None:
@@ -160,26 +134,3 @@ def change_link(session: Session, row: IedRow, state: LinkState, reason: str | N
         .offset(MOST_CHANGES)
     )
     session.execute(delete(LinkChangeRow).where(LinkChangeRow.id.in_(session.scalars(too_old).all())))
-
-
-def _add(
-    session: Session,
-    relay: str,
-    traffic: LinkTraffic,
-    round_trip_s: float | None,
-    day_bytes: tuple[int, int] | None,
-) -> None:
-    row = session.get(LinkFiguresRow, relay)
-    if row is None:
-        row = LinkFiguresRow(
-            ied=relay, connections=0, received_bytes=0, reports=0, report_gaps=0, day=0, day_bytes=0
-        )
-        session.add(row)
-    row.connections += traffic.connections
-    row.received_bytes += traffic.received_bytes
-    row.reports += traffic.reports
-    row.report_gaps += traffic.report_gaps
-    if round_trip_s is not None:
-        row.round_trip_s = round_trip_s
-    if day_bytes is not None:
-        row.day, row.day_bytes = day_bytes

@@ -4,6 +4,7 @@ from service.storage import Repository
 from service.storage.records import LinkTraffic, RelayFindings
 from service.storage.states import AlarmKind, LinkState
 from service.timing.backoff import Backoff
+from testing.service.links import set_link_state
 from testing.service.plants import NOW_NS, SECOND_NS
 
 FIRST = "2025-10-09T08:53:20.000000000Z"
@@ -16,7 +17,7 @@ def test_relays_are_listed(client: httpx.Client) -> None:
 
 
 def test_a_relay_tells_its_link(client: httpx.Client, repository: Repository) -> None:
-    repository.set_link_state(NAME, LinkState.DOWN, "connection refused", now_ns=NOW_NS)
+    set_link_state(repository, NAME, LinkState.DOWN, "connection refused", now_ns=NOW_NS)
     ied = client.get(URL).json()
     assert (ied["link_state"], ied["link_reason"]) == ("down", "connection refused")
     assert (ied["link_changed_time"], ied["last_success_time"]) == (FIRST, None)
@@ -63,8 +64,8 @@ def test_a_relay_tells_what_is_used_of_it(client: httpx.Client, repository: Repo
 def test_a_relay_tells_the_history_of_its_link(client: httpx.Client, repository: Repository) -> None:
     for second in range(30):
         state, reason = (LinkState.DOWN, "refused") if second % 2 else (LinkState.UP, None)
-        repository.set_link_state(NAME, state, reason, now_ns=NOW_NS + second * SECOND_NS)
-        repository.set_link_state(NAME, state, reason, now_ns=NOW_NS + second * SECOND_NS + 1)
+        set_link_state(repository, NAME, state, reason, now_ns=NOW_NS + second * SECOND_NS)
+        set_link_state(repository, NAME, state, reason, now_ns=NOW_NS + second * SECOND_NS + 1)
     repository.reset_links(now_ns=NOW_NS + 60 * SECOND_NS, reason="the collector ended")
     everything = client.get(f"{URL}/link-changes").json()["items"]
     assert len(everything) == 31, "only changes count"
@@ -80,7 +81,8 @@ def test_a_relay_tells_the_history_of_its_link(client: httpx.Client, repository:
 
 def test_what_went_over_a_link_adds_up(client: httpx.Client, repository: Repository) -> None:
     for reports in (1, 2):
-        repository.set_link_state(
+        set_link_state(
+            repository,
             NAME,
             LinkState.UP,
             None,

@@ -18,6 +18,7 @@ from service.storage import Repository
 from service.storage.models import IedRow, LinkChangeRow
 from service.storage.records import Alarm
 from service.storage.states import AlarmState, LinkState
+from testing.service.links import set_link_state
 from testing.service.plants import NOW_NS, SECOND_NS, relay, two_motor_plant
 
 CALLS = AlarmState.UNACKNOWLEDGED
@@ -44,7 +45,7 @@ class Site40:
 
     def set(self, name: str, state: LinkState, at_s: float) -> None:
         reason = None if state is LinkState.UP else "connection refused"
-        self.repository.set_link_state(name, state, reason, now_ns=self.ns(at_s))
+        set_link_state(self.repository, name, state, reason, now_ns=self.ns(at_s))
 
     def look(self, at_s: float) -> None:
         self.source.look(self.ns(at_s))

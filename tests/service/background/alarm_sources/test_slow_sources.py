@@ -27,10 +27,11 @@ from service.configuration.settings import Settings
 from service.plant import Schedule
 from service.storage import Repository
 from service.storage.models import ConditionRow
-from service.storage.records import SERVICE, Alarm, ClockReading
+from service.storage.records import SERVICE, Alarm, ClockNote, ClockReading
 from service.storage.records.alarm_sources import AlarmFinding
 from service.storage.states import AlarmState, ClockQuality, LinkState
 from testing.relays.certificates import identity
+from testing.service.links import set_link_state
 from testing.service.plants import NOW_NS, SECOND_NS, two_motor_plant
 
 DAY_NS = NANOSECONDS_PER_DAY
@@ -62,7 +63,7 @@ def read_clock(
     quality: ClockQuality = ClockQuality.SYNCHRONISED,
 ) -> None:
     reading = ClockReading(round(offset_s * SECOND_NS), round(within_s * SECOND_NS), quality, NOW_NS)
-    repository.note_clock(RELAY, reading)
+    repository.note_clocks([ClockNote(RELAY, reading)])
 
 
 def test_a_clock_is_off_only_where_that_is_sure(table: Table) -> None:
@@ -92,7 +93,7 @@ def test_records_are_missing_when_the_schedule_promised_them(
     plant = two_motor_plant()
     daily = replace(plant.motors[0], schedule=Schedule.parse("0 6 * * *"))
     table.repository.sync_plant(replace(plant, motors=(daily, plant.motors[1])))
-    table.repository.set_link_state(RELAY, LinkState.UP, None, now_ns=NOW_NS - 30 * DAY_NS)
+    set_link_state(table.repository, RELAY, LinkState.UP, None, now_ns=NOW_NS - 30 * DAY_NS)
     source = MissingDataSource(Settings(data_directory=tmp_path), table.repository, NOW_NS)
 
     def latest(column: str, time_ns: int) -> None:
@@ -118,9 +119,9 @@ def test_while_a_link_is_down_and_just_after_nothing_is_missing(table: Table, tm
     daily = replace(plant.motors[0], schedule=Schedule.parse("0 6 * * *"))
     table.repository.sync_plant(replace(plant, motors=(daily,)))
     source = MissingDataSource(Settings(data_directory=tmp_path), table.repository, NOW_NS)
-    table.repository.set_link_state(RELAY, LinkState.DOWN, "refused", now_ns=NOW_NS)
+    set_link_state(table.repository, RELAY, LinkState.DOWN, "refused", now_ns=NOW_NS)
     assert table.settle(source.findings(NOW_NS + 6 * DAY_NS)) == []
-    table.repository.set_link_state(RELAY, LinkState.UP, None, now_ns=NOW_NS + 6 * DAY_NS)
+    set_link_state(table.repository, RELAY, LinkState.UP, None, now_ns=NOW_NS + 6 * DAY_NS)
     assert table.settle(source.findings(NOW_NS + 7 * DAY_NS)) == []
     assert len(table.settle(source.findings(NOW_NS + 8 * DAY_NS))) == 1
 
@@ -129,7 +130,7 @@ def test_what_no_schedule_promises_is_not_missing(table: Table, tmp_path: Path) 
     for days, number in ((None, 0), (10.0, 2)):
         settings = Settings(data_directory=tmp_path, stale_after_days=days)
         for relay in (RELAY, "A2_SEL710"):
-            table.repository.set_link_state(relay, LinkState.UP, None, now_ns=NOW_NS)
+            set_link_state(table.repository, relay, LinkState.UP, None, now_ns=NOW_NS)
         source = MissingDataSource(settings, table.repository, NOW_NS)
         assert len(table.settle(source.findings(NOW_NS + 100 * DAY_NS))) == number
 

@@ -21,6 +21,7 @@ from service.storage.records import (
     Sample,
 )
 from service.storage.states import ClockQuality, LinkState
+from testing.service.links import set_link_state
 from testing.service.plants import NOW_NS, SECOND_NS, two_motor_plant
 from testing.waiting import eventually
 from tests.service.fixtures import database_url, engine
@@ -34,7 +35,7 @@ RELAY, MOTOR = "A1_SEL710", "PUMP-A1"
 def repository(database_url: str) -> Repository:
     repository = Repository(connect(database_url, busy_timeout_s=0.2))
     repository.sync_plant(two_motor_plant())
-    repository.set_link_state(RELAY, LinkState.UP, None, now_ns=NOW_NS, traffic=LinkTraffic(connections=1))
+    set_link_state(repository, RELAY, LinkState.UP, None, now_ns=NOW_NS, traffic=LinkTraffic(connections=1))
     return repository
 
 
@@ -51,7 +52,7 @@ def note(number: int, *, round_trip_s: float | None = 0.01) -> LinkNote:
 
 def test_notes_add_up_and_change_no_state(repository: Repository) -> None:
     repository.note_links([note(1), note(2, round_trip_s=None)])
-    repository.set_link_state(RELAY, LinkState.DOWN, "refused", now_ns=NOW_NS + 3 * SECOND_NS)
+    set_link_state(repository, RELAY, LinkState.DOWN, "refused", now_ns=NOW_NS + 3 * SECOND_NS)
     repository.note_links([note(2)])
     figures = repository.link_figures(RELAY)
     assert (figures.connections, figures.received_bytes, figures.reports, figures.report_gaps) == (
@@ -68,8 +69,8 @@ def test_notes_add_up_and_change_no_state(repository: Repository) -> None:
 
 
 def test_a_note_that_waited_gives_no_bytes_of_the_day_back(repository: Repository) -> None:
-    repository.set_link_state(
-        RELAY, LinkState.DOWN, "cut", now_ns=NOW_NS, traffic=LinkTraffic(), day_bytes=(7, 500)
+    set_link_state(
+        repository, RELAY, LinkState.DOWN, "cut", now_ns=NOW_NS, traffic=LinkTraffic(), day_bytes=(7, 500)
     )
     repository.note_links([note(2)])
     assert (repository.link_figures(RELAY).day, repository.link_figures(RELAY).day_bytes) == (7, 500)
@@ -108,7 +109,7 @@ def test_states_of_a_link_are_noted_in_their_order(repository: Repository) -> No
 
 def test_a_state_that_waited_changes_none_that_was_set_since(repository: Repository) -> None:
     """The batch of a gateway that hung ends a second after its relays were set aside by another."""
-    repository.set_link_state(RELAY, LinkState.QUARANTINED, "it crashes us", now_ns=NOW_NS + 5 * SECOND_NS)
+    set_link_state(repository, RELAY, LinkState.QUARANTINED, "it crashes us", now_ns=NOW_NS + 5 * SECOND_NS)
     repository.note_links([state_note(4, LinkState.DOWN, "cut")])
     ied = repository.relay(RELAY)
     assert (ied.link_state, ied.link_reason) == (LinkState.QUARANTINED, "it crashes us")

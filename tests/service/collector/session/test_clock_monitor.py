@@ -12,6 +12,7 @@ import scl
 from core.units import NANOSECONDS_PER_SECOND
 from mms import Client, DataAccessError, Timestamp
 from service.collector.session.clock_monitor import ClockMonitor, clock_reading
+from service.collector.session.notes import WrittenAtOnce
 from service.plant.metering import measurands_from_scl
 from service.storage.states import ClockQuality, RecordingRequestState
 from testing.waiting import eventually
@@ -126,7 +127,7 @@ def test_a_clock_is_read_though_nobody_triggers(bench: Bench, relay: ScriptedRel
 
 @pytest.fixture
 def monitor(bench: Bench) -> ClockMonitor:
-    found = ClockMonitor(NAME, bench.repository)
+    found = ClockMonitor(NAME, bench.repository, WrittenAtOnce(bench.repository))
     found.begin(measurands_from_scl(scl.read(scl.DEMO_PLANT_SCD).ied(NAME)))
     return found
 

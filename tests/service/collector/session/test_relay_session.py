@@ -13,6 +13,7 @@ from mms import Client, DataAccessError
 from service.collector.session.relay_session import RelaySession
 from service.collector.session.session_policy import SessionPolicy
 from service.recording_store.arriving import Incoming
+from service.storage.records import ReportPosition
 from service.storage.states import AlarmKind, LinkState, RecordingRequestState, RecordingState
 from service.timing.backoff import Backoff
 from testing.waiting import eventually
@@ -364,7 +365,7 @@ def test_a_hostile_name_costs_its_own_file_only(bench: Bench, relay: ScriptedRel
 
 def test_a_relay_that_forgot_the_last_report_is_subscribed_anew(bench: Bench, relay: ScriptedRelay) -> None:
     forgotten = bytes.fromhex("0000000012345678")
-    bench.repository.save_entry_id(NAME, forgotten)
+    bench.repository.save_report_positions([ReportPosition(NAME, forgotten, None)])
     with bench.session():
         assert eventually(lambda: bench.link() is LinkState.UP)
         relay.write_record("HR_1")

@@ -13,9 +13,11 @@ import scl
 from mms import Client, Report
 from service.collector.records.pull import DailyAllowance
 from service.collector.session.link import Link
+from service.collector.session.notes import WrittenAtOnce
 from service.collector.session.report_subscription import ReportQueue, ReportSubscription
 from service.collector.session.session_policy import SessionPolicy
 from service.plant import acquisition_from_scl
+from service.storage.records import ReportPosition
 from service.storage.states import LinkState
 from testing.waiting import eventually
 from tests.service.collector.conftest import Bench
@@ -105,7 +107,7 @@ def test_an_entry_id_is_of_the_block_it_came_from(here: Bench, relay: ScriptedRe
 
 
 def test_an_entry_id_of_before_blocks_were_told_apart_is_any_block_s(here: Bench) -> None:
-    here.repository.save_entry_id(NAME, b"12345678")
+    here.repository.save_report_positions([ReportPosition(NAME, b"12345678", None)])
     assert here.repository.entry_id(NAME, BUFFERED[1]) == b"12345678"
 
 
@@ -122,8 +124,9 @@ def test_an_overflow_is_told_where_it_means_one(bench: Bench, relay: ScriptedRel
         data_set=None,
         members=(),
     )
-    link = Link(NAME, bench.repository, DailyAllowance(1))
-    subscription = ReportSubscription(NAME, bench.repository, link)
+    notes = WrittenAtOnce(bench.repository)
+    link = Link(NAME, notes, DailyAllowance(1))
+    subscription = ReportSubscription(NAME, bench.repository, link, notes)
     if resumed:
         with bench.session():
             relay.write_record("HR_1")

@@ -19,6 +19,7 @@ from service.storage.states import LinkState
 from testing.ports import LOOPBACK, free_port
 from testing.service.conditions import FAULT, HEALTHY, tell
 from testing.service.gateways import running_gateways
+from testing.service.links import set_link_state
 from testing.service.plants import NOW_NS
 from testing.waiting import eventually
 from tests.service.gateways.iec104.telegrams import (
@@ -78,7 +79,7 @@ def test_a_change_is_told_by_itself_and_nothing_else(repository: Repository, por
 
         assert eventually(lambda: state() == 0)
         master.told.clear()
-        repository.set_link_state("A1_SEL710", LinkState.UP, now_ns=NOW_NS, reason=None)
+        set_link_state(repository, "A1_SEL710", LinkState.UP, now_ns=NOW_NS, reason=None)
         master.next_change()
     assert {place: (one.value, one.cause) for place, one in master.told.items()} == {
         PUMP + RELAY_ANSWERS: (1, SPONTANEOUS)

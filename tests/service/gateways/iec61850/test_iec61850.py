@@ -33,6 +33,7 @@ from service.storage.states import LinkState
 from testing.ports import LOOPBACK, free_port
 from testing.service.conditions import FAULT, HEALTHY, tell
 from testing.service.gateways import running_gateways
+from testing.service.links import set_link_state
 from testing.service.plants import NOW_NS, two_motor_plant
 from testing.waiting import eventually
 
@@ -95,7 +96,7 @@ def test_a_fault_is_seen_with_its_phase_time_and_quality(repository: Repository,
 def test_a_relay_that_does_not_answer_is_no_good_physical_device(
     repository: Repository, client: Client
 ) -> None:
-    repository.set_link_state("A1_SEL710", LinkState.DOWN, now_ns=NOW_NS, reason="no answer")
+    set_link_state(repository, "A1_SEL710", LinkState.DOWN, now_ns=NOW_NS, reason="no answer")
     assert eventually(lambda: client.read(f"{PUMP}/LPHD1.PhyHealth.stVal", STATUS) == 3)
     assert client.read(f"{FAN}/LPHD1.PhyHealth.stVal", STATUS) == 2
 

@@ -16,6 +16,7 @@ from service.storage.states import LinkState
 from testing.service import sparkplug
 from testing.service.conditions import FAULT, HEALTHY, tell
 from testing.service.gateways import running_gateways
+from testing.service.links import set_link_state
 from testing.service.mosquitto import Heard, Mosquitto
 from testing.service.plants import NOW_NS, two_motor_plant
 from testing.service.sparkplug import Told
@@ -96,7 +97,7 @@ def test_only_what_changed_is_told(
     assert data.value("Device Health") == "failure"
     assert data.metrics["Condition/State"]["timestamp"] == [(NOW_NS + 10**9) // 10**6]
     assert "Properties/Site" not in data.metrics
-    repository.set_link_state("A2_SEL710", LinkState.DOWN, now_ns=NOW_NS, reason="no answer")
+    set_link_state(repository, "A2_SEL710", LinkState.DOWN, now_ns=NOW_NS, reason="no answer")
     wait_until(lambda: kinds(heard).count("DDATA") == 2)
     assert told(heard, "DDATA")[1].value("Relay/Link") == "down"
 

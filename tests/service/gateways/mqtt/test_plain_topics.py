@@ -19,6 +19,7 @@ from testing.ports import LOOPBACK, free_port
 from testing.relays.certificates import identity
 from testing.service.conditions import FAULT, HEALTHY, tell
 from testing.service.gateways import running_gateways, started_gateways
+from testing.service.links import set_link_state
 from testing.service.mosquitto import Heard, Mosquitto, program, running_mosquitto
 from testing.service.plants import NOW_NS
 from testing.waiting import eventually, wait_until
@@ -92,7 +93,7 @@ def test_a_broker_that_was_away_for_an_hour_is_told_all_that_happened_though_the
             tell(repository, replace(condition, as_of_ns=time_ns), now_ns=time_ns)
             if number == 5:
                 os.kill(first, signal.SIGKILL)
-        repository.set_link_state("A2_SEL710", LinkState.DOWN, now_ns=times[-1], reason="no answer")
+        set_link_state(repository, "A2_SEL710", LinkState.DOWN, now_ns=times[-1], reason="no answer")
         sequences = list(repository.alarm_sequences(0, limit=1000))
         broker.start()
         with broker.listening("statorwatch/#") as heard:

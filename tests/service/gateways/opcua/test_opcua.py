@@ -33,6 +33,7 @@ from testing.service.conditions import FAULT, HEALTHY, tell
 from testing.service.diagnosed import add_diagnosed
 from testing.service.gateways import running_gateways
 from testing.service.job_runner import register_runner
+from testing.service.links import set_link_state
 from testing.service.plants import NOW_NS, SECOND_NS, fault
 from testing.waiting import eventually
 
@@ -155,7 +156,7 @@ def test_only_what_changes_is_sent_to_a_subscription(repository: Repository, ope
         sent.clear()
         await asyncio.to_thread(tell, repository, FAULT)
         await asyncio.to_thread(
-            repository.set_link_state, "A1_SEL710", LinkState.UP, now_ns=NOW_NS, reason=None
+            set_link_state, repository, "A1_SEL710", LinkState.UP, now_ns=NOW_NS, reason=None
         )
         while len(sent) < 3:
             await asyncio.sleep(0.05)

@@ -17,6 +17,7 @@ from service.gateways.plant_state.reading import NOT_JUDGED, read_plant_state
 from service.storage import Repository
 from service.storage.states import LinkState
 from testing.service.conditions import FAULT, HEALTHY, tell
+from testing.service.links import set_link_state
 from testing.service.plants import NOW_NS
 
 
@@ -53,7 +54,7 @@ def test_only_what_differs_is_told_again(repository: Repository, follower: Plant
     tell(repository, HEALTHY)
     next_change(follower)
     assert follower.next_change(Event(), longest_s=0.1) is None
-    repository.set_link_state("A2_SEL710", LinkState.DOWN, now_ns=NOW_NS, reason="no answer")
+    set_link_state(repository, "A2_SEL710", LinkState.DOWN, now_ns=NOW_NS, reason="no answer")
     change = next_change(follower)
     assert [relay.name for relay in change.relays] == ["A2_SEL710"]
     assert change.relays[0].device_health is DeviceHealth.FAILURE

@@ -14,6 +14,7 @@ from service.storage.repository.overviews.change_stamps import Subject
 from service.storage.states import AlarmKind, LinkState
 from testing.service.conditions import FAULT, tell
 from testing.service.following import FAN, PUMP, Recorder
+from testing.service.links import set_link_state
 from testing.service.observations import observation
 from testing.service.plants import NOW_NS
 
@@ -30,7 +31,7 @@ def new_alarm(repository: Repository, _recorder: Recorder) -> None:
 
 
 def link_goes_down(repository: Repository, _recorder: Recorder) -> None:
-    repository.set_link_state(RELAY, LinkState.DOWN, "timed out", now_ns=NOW_NS)
+    set_link_state(repository, RELAY, LinkState.DOWN, "timed out", now_ns=NOW_NS)
 
 
 def condition_is_told(repository: Repository, _recorder: Recorder) -> None:
@@ -88,7 +89,7 @@ def test_the_counter_changes_with_what_others_write(
     before = counter.value()
     repository.change_stamps(ALL)
     assert counter.value() == before
-    repository.set_link_state(RELAY, LinkState.DOWN, "timed out", now_ns=NOW_NS)
+    set_link_state(repository, RELAY, LinkState.DOWN, "timed out", now_ns=NOW_NS)
     after = counter.value()
     assert after != before
     assert counter.value() == after

@@ -6,6 +6,7 @@ from service.storage.records import Actor, RelayFindings, RemoteRecord, Role, Sa
 from service.storage.records.alarms import AlarmPlace, AlarmSpec
 from service.storage.states import AlarmKind, AlarmState, LinkState
 from service.timing.backoff import Backoff
+from testing.service.links import set_link_state
 from testing.service.plants import NOW_NS, SECOND_NS
 
 A, B = "A1_SEL710", "A2_SEL710"
@@ -14,7 +15,7 @@ DIFFERENCE = {"kind": "logical-node", "expected": "X/FLTRDRE1", "found": None}
 
 
 def test_relays_with_all_that_belongs_to_them(repository: Repository, store: RecordingStore) -> None:
-    repository.set_link_state(A, LinkState.UP, None, now_ns=NOW_NS)
+    set_link_state(repository, A, LinkState.UP, None, now_ns=NOW_NS)
     repository.set_aside(B, "crashed", backoff=Backoff(60.0, 600.0), now_ns=NOW_NS)
     repository.note_findings(RelayFindings(A, NOW_NS, {}, [DIFFERENCE] * 3, [], 7))
     repository.raise_alarm(A, AlarmKind.DAILY_LIMIT, "", "too much", now_ns=NOW_NS)
@@ -42,7 +43,7 @@ def test_relays_with_all_that_belongs_to_them(repository: Repository, store: Rec
 
 
 def test_relays_are_chosen_by_site_link_and_text(repository: Repository) -> None:
-    repository.set_link_state(A, LinkState.DOWN, "refused", now_ns=NOW_NS)
+    set_link_state(repository, A, LinkState.DOWN, "refused", now_ns=NOW_NS)
 
     def names(
         *, site: str | None = None, link: LinkState | None = None, text: str | None = None
@@ -60,7 +61,7 @@ def test_relays_are_chosen_by_site_link_and_text(repository: Repository) -> None
 
 def test_a_link_over_time_begins_with_how_it_was_before(repository: Repository) -> None:
     for hour, state in enumerate((LinkState.UP, LinkState.DOWN, LinkState.UP)):
-        repository.set_link_state(A, state, None, now_ns=NOW_NS + hour * 3600 * SECOND_NS)
+        set_link_state(repository, A, state, None, now_ns=NOW_NS + hour * 3600 * SECOND_NS)
     history = repository.link_history(A, from_ns=NOW_NS + 1800 * SECOND_NS)
     assert [change.state for change in history] == [LinkState.UP, LinkState.DOWN, LinkState.UP]
     later = repository.link_history(A, from_ns=NOW_NS + 9000 * SECOND_NS)

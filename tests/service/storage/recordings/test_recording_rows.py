@@ -4,7 +4,7 @@ from core.units import NANOSECONDS_PER_DAY
 from service.recording_store.recording import StoredRecording
 from service.recording_store.store import RecordingStore
 from service.storage import NotFoundError, Repository
-from service.storage.records import ClockReading, RecordingEntry, RemoteRecord
+from service.storage.records import ClockNote, ClockReading, RecordingEntry, RemoteRecord
 from service.storage.states import ClockQuality, RecordingRequestState, RecordingState
 from testing.service.job_runner import RUNNER
 from testing.service.plants import NOW_NS, SECOND_NS, fault
@@ -244,7 +244,7 @@ def stored_with_a_clock(
     repository: Repository, store: RecordingStore, measured_ns: int, announced_ns: int = NOW_NS
 ) -> RecordingEntry:
     reading = ClockReading(OFFSET_NS, 7, ClockQuality.SYNCHRONISED, measured_ns)
-    repository.note_clock("A1_SEL710", reading)
+    repository.note_clocks([ClockNote("A1_SEL710", reading)])
     repository.announce_recording("A1_SEL710", "PUMP-A1", REMOTE, now_ns=announced_ns)
     added = repository.add_recording(
         record(store), motor="PUMP-A1", relay="A1_SEL710", remote=REMOTE, now_ns=NOW_NS

@@ -26,6 +26,7 @@ from service.web.live.routes import live_of
 from service.web.live.topics import Topic, topic_of
 from testing.service.accounts import token_of
 from testing.service.conditions import FAULT, tell
+from testing.service.links import set_link_state
 from testing.service.listening import LONGEST_S, listening
 from testing.web.followers import until_followed
 
@@ -113,7 +114,7 @@ def test_a_change_is_told_to_those_whom_it_concerns(url: str, repository: Reposi
         until_known(lines)
         tell(repository, FAULT)
         assert until_told(lines, "fleet", as_things_are(repository, topics)) == {"fleet", "motor"}
-        repository.set_link_state("A2_SEL710", LinkState.DOWN, "gone", now_ns=time.time_ns())
+        set_link_state(repository, "A2_SEL710", LinkState.DOWN, "gone", now_ns=time.time_ns())
         told = until_told(lines, "relays", as_things_are(repository, topics))
         assert told == {"fleet", "relays"}, "the motor has another relay"
 

@@ -13,12 +13,13 @@ from service.configuration.relay_access import RelayAccess, RelayTls
 from service.configuration.settings import Settings
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
-from service.storage.records import ClockReading, RelayFindings, Role
+from service.storage.records import ClockNote, ClockReading, RelayFindings, Role
 from service.storage.states import AlarmKind, ClockQuality, LinkState
 from service.timing.backoff import Backoff
 from service.web.app import create_site
 from testing.relays.certificates import identity
 from testing.service.accounts import token_of
+from testing.service.links import set_link_state
 from tests.service.api.serving import serving
 from tests.service.web.pages import HOSTILE, addresses, page, words
 
@@ -30,9 +31,10 @@ SECOND = 10**9
 @pytest.fixture
 def busy(repository: Repository) -> Repository:
     """One relay that has everything to tell, beside one that nobody has visited."""
-    repository.set_link_state(A, LinkState.UP, None, now_ns=NOW_NS - 86_400 * SECOND)
-    repository.set_link_state(A, LinkState.DOWN, f"refused {HOSTILE}", now_ns=NOW_NS - 60 * SECOND)
-    repository.note_clock(A, ClockReading(-7 * SECOND, SECOND // 10, ClockQuality.NOT_SYNCHRONISED, NOW_NS))
+    set_link_state(repository, A, LinkState.UP, None, now_ns=NOW_NS - 86_400 * SECOND)
+    set_link_state(repository, A, LinkState.DOWN, f"refused {HOSTILE}", now_ns=NOW_NS - 60 * SECOND)
+    reading = ClockReading(-7 * SECOND, SECOND // 10, ClockQuality.NOT_SYNCHRONISED, NOW_NS)
+    repository.note_clocks([ClockNote(A, reading)])
     difference = {"kind": "logical-node", "expected": HOSTILE, "found": None}
     ignored = {"name": f"{HOSTILE}.TXT", "reason": "no file of a recording"}
     acquisition = {
