@@ -16,7 +16,7 @@ class _Mains:
 
     def __call__(self, drive: object) -> tuple[float, list[float]]:
         # Of the middle of the step, which begins one step later: motulator delays the duty ratios by one.
-        t = float(drive.t0) + 1.5 * self._step_s  # type: ignore[attr-defined]
+        t = float(drive.t0) + 1.5 * self._step_s  # type: ignore[attr-defined]  # motulator has no types
         angles = 2.0 * np.pi * (self._frequency_hz * t - np.arange(3) / 3.0)
         return self._step_s, list(0.5 + self._amplitude * np.cos(angles))
 

@@ -28,7 +28,7 @@ ROUNDS = 6
 """Of multistart: more than any budget here."""
 
 
-class BudgetSpent(Exception):  # noqa: N818
+class BudgetSpent(Exception):  # noqa: N818 - it ends a search, and is no error
     """Raised out of a peer's search when its evaluations are used up."""
 
 

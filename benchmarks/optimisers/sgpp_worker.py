@@ -26,12 +26,12 @@ def generate(function: str, lower: list[float], upper: list[float], budget: int)
     points: list[list[float]] = []
     costs: list[float] = []
 
-    class Objective(pysgpp.ScalarFunction):  # type: ignore[misc]
+    class Objective(pysgpp.ScalarFunction):  # type: ignore[misc]  # pysgpp has no types
         def __init__(self) -> None:
             super().__init__(len(lower))
 
         def eval(self, x: object) -> float:
-            unit = [float(x[k]) for k in range(len(lower))]  # type: ignore[index]
+            unit = [float(x[k]) for k in range(len(lower))]  # type: ignore[index]  # a vector of pysgpp
             cost = float(fun((low + np.array(unit) * (high - low))[np.newaxis])[0])
             points.append(unit)
             costs.append(cost)
