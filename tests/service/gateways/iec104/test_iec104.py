@@ -78,8 +78,12 @@ def test_a_change_is_told_by_itself_and_nothing_else(repository: Repository, por
             return master.told[PUMP].quality
 
         assert eventually(lambda: state() == 0)
+        # Changes are told one after the other: once this one is, none of the condition is under way any more.
+        set_link_state(repository, "A1_SEL710", LinkState.DOWN, now_ns=NOW_NS, reason="no answer")
+        while master.told[PUMP + RELAY_ANSWERS].cause != SPONTANEOUS:
+            master.next_change()
         master.told.clear()
-        set_link_state(repository, "A1_SEL710", LinkState.UP, now_ns=NOW_NS, reason=None)
+        set_link_state(repository, "A1_SEL710", LinkState.UP, now_ns=NOW_NS + 1, reason=None)
         master.next_change()
     assert {place: (one.value, one.cause) for place, one in master.told.items()} == {
         PUMP + RELAY_ANSWERS: (1, SPONTANEOUS)
