@@ -78,6 +78,7 @@ def test_filters_are_in_the_address_and_survive_a_reload(looked_at: Site) -> Non
     page.page.get_by_label("Text").fill("")
     page.page.get_by_role("combobox", name="State").select_option("healthy")
     expect(page.page.locator("table.fleet tbody")).to_contain_text(WELL)
+    expect(page.page.locator("table.fleet tbody tr")).to_have_count(1)
     assert motors_of(page) == [WELL]
     page.page.get_by_role("link", name="1 not running").click()
     assert motors_of(page) == [STANDING]
