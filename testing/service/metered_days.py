@@ -14,7 +14,7 @@ QUARTERS = 96
 STANDING, SILENT = range(24, 48), range(48, 60)
 LOW, UNEVEN, SLOW = range(4), range(92, 96), range(88, 92)
 MINUTE_NS = 60 * NANOSECONDS_PER_SECOND
-LATE_NS = 150 * NANOSECONDS_PER_SECOND
+LATE_NS = 120 * NANOSECONDS_PER_SECOND
 """Means are made two minutes after their time."""
 POWER_W = 640.0
 
