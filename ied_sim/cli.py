@@ -24,6 +24,7 @@ from ied_sim.relay.plant_clock import REAL_TIME, ClockSettings
 from ied_sim.scenario.scenario import healthy_reference, read_clock, read_scenario
 from ied_sim.simulator import Simulator
 from mms import filter_tls_log_from_stderr
+from mms.goose import RawSocketError
 from scl import Address
 
 HOST = "127.0.0.1"
@@ -78,6 +79,12 @@ def ied_sim(
     files: Annotated[
         Path | None, typer.Option(help="Directory that keeps the relays' files; a temporary one without.")
     ] = None,
+    goose_interface: Annotated[
+        str | None,
+        typer.Option(
+            help="Publish the relays' GOOSE control blocks on this network interface (needs CAP_NET_RAW)."
+        ),
+    ] = None,
     truth: Annotated[
         bool, typer.Option("--truth", help="Print the motors' true condition as JSON and stop.")
     ] = False,
@@ -121,8 +128,8 @@ def ied_sim(
             return
         given = host is not None or port is not None
         addresses = consecutive_addresses(document, names, host or HOST, port or PORT) if given else {}
-        _serve(document, names, scenarios, files, clock, addresses)
-    except (SimulatorError, TableError, scl.SclError, OSError) as error:
+        _serve(document, names, scenarios, files, clock, addresses, goose_interface)
+    except (SimulatorError, TableError, RawSocketError, scl.SclError, OSError) as error:
         typer.echo(f"ied-sim: {error}", err=True)
         raise typer.Exit(1) from error
 
@@ -154,6 +161,7 @@ def _serve(
     files: Path | None,
     clock: ClockSettings,
     addresses: dict[str, Address],
+    goose_interface: str | None,
 ) -> None:
     # The signals are waited for, not handled. They are blocked before any thread starts, so all inherit that.
     signals = (signal.SIGTERM, signal.SIGINT)
@@ -164,7 +172,13 @@ def _serve(
     with (
         tempfile.TemporaryDirectory(prefix="ied-sim-") as temporary,
         Simulator(
-            document, scenarios, files=files or Path(temporary), ieds=names, clock=clock, addresses=addresses
+            document,
+            scenarios,
+            files=files or Path(temporary),
+            ieds=names,
+            clock=clock,
+            addresses=addresses,
+            goose_interface=goose_interface,
         ) as simulator,
     ):
         for name, address in simulator.addresses.items():

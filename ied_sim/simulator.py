@@ -11,10 +11,12 @@ from typing import Self
 from ied_sim.errors import SimulatorError
 from ied_sim.front import RelayProxies
 from ied_sim.relay.configuration import RelayConfiguration
+from ied_sim.relay.goose import GooseOutlet
 from ied_sim.relay.plant_clock import REAL_TIME, ClockSettings, PlantClock
 from ied_sim.relay.relay import Relay
 from ied_sim.scenario.scenario import healthy_reference
 from mms import ModelError, ServerPump, ServerStartFailed
+from mms.goose import PublisherThread, RawSocket
 from scl import Address, Scl, SclError
 from scl.ied_model import Ied
 
@@ -43,6 +45,8 @@ class Simulator:
         How the plant's time runs.
     addresses : mapping of str to Address
         Where relays listen, by their IED. A relay without one listens where the file says.
+    goose_interface : str, optional
+        Network interface on which the relays' GOOSE control blocks are published. None are without.
 
     Raises
     ------
@@ -52,6 +56,8 @@ class Simulator:
         The file lacks an IED of `ieds`.
     OSError
         The relays' directories cannot be made.
+    RawSocketError
+        The interface for GOOSE does not exist, or the capability CAP_NET_RAW is missing.
     """
 
     def __init__(
@@ -63,11 +69,18 @@ class Simulator:
         ieds: Sequence[str] = (),
         clock: ClockSettings = REAL_TIME,
         addresses: Mapping[str, Address] | None = None,
+        goose_interface: str | None = None,
     ) -> None:
         self._files = files
         self._clock = PlantClock(time.time_ns(), clock)
         self._start_s = time.monotonic()
         self._proxies = RelayProxies()
+        self._goose_socket = None if goose_interface is None else RawSocket(goose_interface)
+        self._goose_outlet = (
+            None
+            if self._goose_socket is None
+            else GooseOutlet(PublisherThread(self._goose_socket.send), self._goose_socket.address)
+        )
         self.relays: dict[str, Relay] = {}
         self.addresses: dict[str, Address] = {}
         self.left_out: dict[str, str] = {}
@@ -101,6 +114,8 @@ class Simulator:
             self.stop()
             raise self._start_error(str(taken))
         self._updating.start()
+        if self._goose_outlet is not None:
+            self._goose_outlet.thread.start()
 
     def stop(self) -> None:
         """Close all connections and abandon captures under way."""
@@ -113,6 +128,9 @@ class Simulator:
             if relay.serves_itself:
                 relay.server.stop()
         self._pump.stop()
+        if self._goose_socket is not None and self._goose_outlet is not None:
+            self._goose_outlet.thread.stop()
+            self._goose_socket.close()
 
     def __enter__(self) -> Self:
         self.start()
@@ -146,6 +164,7 @@ class Simulator:
                 files=self._files,
                 clock=self._clock,
                 proxies=self._proxies,
+                goose_outlet=self._goose_outlet,
             )
         except (SclError, ModelError) as error:
             self._proxies.remove(address)

@@ -2,14 +2,21 @@
 
 import os
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
-from benchmarks.gateways.plant import ChangingPlant
-
 TICKS_PER_S = os.sysconf("SC_CLK_TCK")
+
+
+class Changeable(Protocol):
+    """A plant of motors that are faulty or healthy in turns."""
+
+    @property
+    def motors(self) -> Sequence[str]: ...
+
+    def change(self, name: str, number: int) -> None: ...
 
 
 class WaitForState(Protocol):
@@ -39,7 +46,7 @@ class Load:
 
 def measure(
     process_id: int,
-    plant: ChangingPlant,
+    plant: Changeable,
     wait_for: WaitForState,
     *,
     idle_s: float,

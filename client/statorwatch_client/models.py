@@ -40,6 +40,7 @@ AlarmKind: TypeAlias = Literal[
     "parameter-drift",
     "hard-starts",
     "changed-starts",
+    "motor-tripped",
     "missing-data",
     "link-down",
     "site-lost",

@@ -20,6 +20,7 @@ from ied_sim.relay.configuration import RelayConfiguration
 from ied_sim.relay.controls import RelayControls
 from ied_sim.relay.event_files import EventFiles
 from ied_sim.relay.event_recorder import Capture, EventRecorder
+from ied_sim.relay.goose import GooseOutlet, RelayGoose
 from ied_sim.relay.listening import listening_address
 from ied_sim.relay.misbehaviour import RelayMisbehaviour
 from ied_sim.relay.plant_clock import PlantClock
@@ -69,6 +70,8 @@ class Relay:
         The plant's clock.
     proxies : RelayProxies, optional
         Where it gets a proxy if it needs one.
+    goose_outlet : GooseOutlet, optional
+        Where its GOOSE messages go. It sends none without.
 
     Raises
     ------
@@ -88,6 +91,7 @@ class Relay:
         files: Path,
         clock: PlantClock,
         proxies: RelayProxies | None = None,
+        goose_outlet: GooseOutlet | None = None,
     ) -> None:
         profile = configuration.profile
         self.name = ied_name
@@ -146,6 +150,7 @@ class Relay:
         self._recorder = EventRecorder(
             ied_name, configuration.plant, configuration.recorder, clock=clock, store=self._store
         )
+        goose = None if goose_outlet is None else RelayGoose(ied, goose_outlet)
         self._relay_server = RelayServer(
             ied_name,
             model_text(document, ied_name),
@@ -169,6 +174,7 @@ class Relay:
             access=configuration.access,
             identity=Identity(ied.manufacturer, ied.type, profile.firmware),
             misbehaviour_state=self.misbehaviour_state,
+            goose=goose,
         )
         self._values = RelayValues(
             self._relay_server,
@@ -184,6 +190,8 @@ class Relay:
         )
         self._publish_initial_values(self._clock.now_ns())
         self._relay_server.apply_published()
+        if goose is not None:
+            goose.begin(self._clock.now_ns())
 
     @property
     def server(self) -> Server:

@@ -10,6 +10,7 @@ from ied_sim.misbehaviour import Kind, MisbehaviourState
 from ied_sim.profiles.profile import Profile
 from ied_sim.relay.clock import RelayClock
 from ied_sim.relay.configuration import Access
+from ied_sim.relay.goose import RelayGoose
 from ied_sim.relay.points import RelayPoints
 from ied_sim.relay.report_control import with_optional_fields, without_data_set
 from mms import (
@@ -63,6 +64,7 @@ class RelayServer:
         access: Access,
         identity: Identity,
         misbehaviour_state: MisbehaviourState,
+        goose: RelayGoose | None,
     ) -> None:
         # All models have the same name: relays of one kind then share one text, which is checked once.
         anonymous = model.replace(f"MODEL({name}){{", f"MODEL({_ANY_NAME}){{", 1)
@@ -80,6 +82,7 @@ class RelayServer:
         self._access = access
         self._identity = identity
         self._misbehaviour_state = misbehaviour_state
+        self._goose = goose
         self._values: dict[str, Value | Quality] = {}
         self._stamps: dict[str, tuple[str | None, str | None]] = {}
         self._switching = threading.Lock()
@@ -114,6 +117,8 @@ class RelayServer:
             self._values |= changes
             for server in self._published_to:
                 server.post(changes)
+            if self._goose is not None:
+                self._goose.update(changes, stamp.ns)
 
     def apply_published(self) -> None:
         """Apply to the server what was published. Raises ModelError where it does not fit.

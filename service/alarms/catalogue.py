@@ -100,6 +100,14 @@ CATALOGUE: Final[Mapping[AlarmKind, AlarmDescription]] = {
         "the latest three starts are as the first ones again, the reference begins anew (motor rewound, "
         "recorder changed, reference restarted), or the motor leaves the plant",
     ),
+    AlarmKind.MOTOR_TRIPPED: AlarmDescription(
+        AlarmPriority.HIGH,
+        "The relay's protection tripped the motor, as its GOOSE messages say (`[gateways.goose]`).",
+        "What drives the process stands, and a start onto a fault makes the damage worse.",
+        "Read at the relay which element tripped, look at the record of the trip and at the motor's "
+        "condition, and start the motor only when the cause is known.",
+        "the relay tells that its trip has fallen, or the motor leaves the plant",
+    ),
     AlarmKind.MISSING_DATA: AlarmDescription(
         AlarmPriority.MEDIUM,
         "The motor has no valid record for longer than its schedule promises, and was not seen to stand.",

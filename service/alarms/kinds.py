@@ -23,6 +23,7 @@ class AlarmKind(StrEnum):
     PARAMETER_DRIFT = "parameter-drift"
     HARD_STARTS = "hard-starts"
     CHANGED_STARTS = "changed-starts"
+    MOTOR_TRIPPED = "motor-tripped"
     MISSING_DATA = "missing-data"
     LINK_DOWN = "link-down"
     SITE_LOST = "site-lost"

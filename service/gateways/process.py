@@ -21,6 +21,12 @@ log = structlog.get_logger(__name__)
 Run = Callable[[GatewayContext], None]
 
 
+def _goose() -> Run:
+    from service.gateways.goose.gateway import run
+
+    return run
+
+
 def _iec104() -> Run:
     from service.gateways.iec104.gateway import run
 
@@ -52,6 +58,7 @@ def _opcua() -> Run:
 
 
 KINDS: Mapping[str, Callable[[], Run]] = {
+    "goose": _goose,
     "iec104": _iec104,
     "iec61850": _iec61850,
     "modbus": _modbus,
@@ -60,12 +67,15 @@ KINDS: Mapping[str, Callable[[], Run]] = {
 }
 """Each loads its gateway, with its library, in its own process alone."""
 
+RAW_FRAMES = {"goose"}
+"""Kinds that hear Ethernet frames, and keep the capability for that alone."""
+
 
 def main() -> None:
     """Run the gateway that the command line names until the service is gone."""
     kind = sys.argv[1]
     run = KINDS[kind]()
-    settings, stop = begin_child(f"gateway {kind}")
+    settings, stop = begin_child(f"gateway {kind}", hears_raw_frames=kind in RAW_FRAMES)
     with _private_output() as output:
         repository = Repository(connect(settings.database_url, limits=limits_of(settings)))
         try:

@@ -6,15 +6,23 @@ from threading import Event, Thread
 from typing import BinaryIO
 
 from service.configuration.settings import Settings
+from service.process.capabilities import Capability, give_up, keep_only
 from service.process.logs import configure_logging
 from service.process.termination import leave_to_parent
 
 
-def begin_child(process: str, settings_pipe: BinaryIO = sys.stdin.buffer) -> tuple[Settings, Event]:
+def begin_child(
+    process: str, settings_pipe: BinaryIO = sys.stdin.buffer, *, hears_raw_frames: bool = False
+) -> tuple[Settings, Event]:
     """Return the settings, and an event that is set when the parent has closed the pipe, however it went.
 
-    process: names this one in the log.
+    process: names this one in the log.  hears_raw_frames: whether it needs raw sockets. One that does keeps
+    the capability for them alone, all others give it up.
     """
+    if hears_raw_frames:
+        keep_only([Capability.NET_RAW])
+    else:
+        give_up([Capability.NET_RAW])
     # They reach every process of a terminal or of a systemd unit; this one ends when the service says so.
     leave_to_parent(signal.SIGINT, signal.SIGTERM)
     settings = Settings.model_validate_json(settings_pipe.readline())

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 from pydantic import BaseModel, ConfigDict
 
+from service.configuration.gateways.goose import GooseSettings
 from service.configuration.gateways.iec104 import Iec104Settings
 from service.configuration.gateways.iec61850 import Iec61850Settings
 from service.configuration.gateways.modbus import ModbusSettings
@@ -16,6 +17,7 @@ class GatewaysSettings(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
+    goose: GooseSettings | None = None
     iec104: Iec104Settings | None = None
     iec61850: Iec61850Settings | None = None
     modbus: ModbusSettings | None = None

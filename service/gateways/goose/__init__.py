@@ -1,0 +1,1 @@
+"""The GOOSE gateway: listens to relays' trips, and to signals that ask for a record."""

@@ -1,0 +1,174 @@
+"""The GOOSE gateway: a socket is read on a thread of its own, so that no message waits for the database."""
+
+import time
+from queue import Empty, Full, Queue
+from threading import Event, Thread
+from typing import Final
+
+import structlog
+from sqlalchemy.exc import SQLAlchemyError
+
+import scl
+from core.time_stamps import rfc3339
+from mms.goose import RawSocket, RawSocketError
+from service.alarms.kinds import AlarmKind
+from service.configuration.settings import Settings
+from service.gateways.context import GatewayContext
+from service.gateways.goose.listener import GooseListener, SignalChange
+from service.gateways.goose.signals import Meaning, SignalError, destinations, watched_blocks
+from service.plant import PlantError, read_plant
+from service.storage import NotFoundError, Repository, StorageError
+from service.storage.records import Actor, AlarmPlace, AlarmSpec
+from service.timing.database_silence import database_trouble
+
+log = structlog.get_logger(__name__)
+
+LOOK_S: Final = 0.5
+"""Longest wait for a frame or a change before it is seen whether the service is gone."""
+REOPEN_S: Final = 5.0
+"""Between attempts to have the socket."""
+RETRY_S: Final = 1.0
+"""Between attempts while the database does not answer."""
+MOST_WAITING: Final = 10_000
+"""Changes of signals that wait for the database."""
+GOOSE: Final = Actor("goose", "service")
+"""Who asked for a recording, in the audit trail."""
+
+
+def run(context: GatewayContext) -> None:
+    """Listen until the service is gone."""
+    receiver = _receiver(context)
+    if receiver is None:
+        return
+    receiver.start()
+    writer = SignalWriter(context.repository, context.settings.max_open_requests)
+    while not context.stop.is_set():
+        change = receiver.next_change(LOOK_S)
+        while change is not None and not context.stop.is_set():
+            try:
+                writer.write(change, time.time_ns())
+                change = None
+            except SQLAlchemyError as error:
+                context.tell(f"the database does not answer: {database_trouble(error)}")
+                context.stop.wait(RETRY_S)
+        context.tell(receiver.problem)
+    receiver.stop()
+
+
+def _receiver(context: GatewayContext) -> "Receiver | None":
+    """Return what listens; None where the service is gone before it can."""
+    while not context.stop.is_set():
+        try:
+            return Receiver(context.settings, context.stop)
+        except RawSocketError as error:  # An interface may come up later.
+            context.tell(str(error))
+            context.stop.wait(REOPEN_S)
+        except (PlantError, SignalError, scl.SclError) as error:
+            log.warning("the GOOSE gateway cannot listen", error=str(error))
+            context.tell(str(error))
+            context.stop.wait()  # Starting it again would change nothing.
+    return None
+
+
+class Receiver:
+    """Reads the socket on a thread of its own."""
+
+    def __init__(self, settings: Settings, stop: Event) -> None:
+        """Raises PlantError, SclError, SignalError, RawSocketError."""
+        chosen = settings.gateways.goose
+        assert chosen is not None  # noqa: S101 - it was started for them
+        if settings.scd is None:
+            raise SignalError("gateways.goose: expected the setting scd, whose GSEControl says what is sent")
+        blocks = watched_blocks(chosen, scl.read(settings.scd), read_plant(settings))
+        self._listener = GooseListener(blocks, simulated=chosen.simulated)
+        self._socket = RawSocket(chosen.interface, destinations(blocks))
+        self._socket.wait_at_most(LOOK_S)
+        self._interface = chosen.interface
+        self._stop = stop
+        self._changes: Queue[SignalChange] = Queue(MOST_WAITING)
+        self._trouble: str | None = None
+        self._lost = 0
+        self._thread = Thread(target=self._run, name="GOOSE receiver", daemon=True)
+        log.info("listening to GOOSE", interface=chosen.interface, blocks=len(blocks))
+
+    def start(self) -> None:
+        """Begin to read."""
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Wait for the thread, which ends by the event, and close the socket."""
+        self._thread.join()
+        self._socket.close()
+
+    def next_change(self, longest_s: float) -> SignalChange | None:
+        """Return the next change of a signal; None where there was none for so long."""
+        try:
+            return self._changes.get(timeout=longest_s)
+        except Empty:
+            return None
+
+    @property
+    def problem(self) -> str | None:
+        """Return what does not work; None where all does."""
+        if self._lost:
+            return f"{self._lost} changes of signals came while the database did not answer, and were lost"
+        return self._trouble or self._listener.problem
+
+    def _run(self) -> None:
+        while not self._stop.is_set():
+            try:
+                octets = self._socket.receive()
+                self._trouble = None
+            except TimeoutError:
+                octets = None
+            except OSError as error:
+                self._trouble = f"{self._interface}: {error}"
+                self._stop.wait(LOOK_S)
+                continue
+            now_s = time.monotonic()
+            for change in self._listener.receive(octets, now_s) if octets else ():
+                self._keep(change)
+            self._listener.expire(now_s)
+
+    def _keep(self, change: SignalChange) -> None:
+        try:
+            self._changes.put_nowait(change)
+        except Full:
+            self._lost += 1
+
+
+class SignalWriter:
+    """Does what the signals mean: alarms of trips, and requests for recordings."""
+
+    def __init__(self, repository: Repository, most_open: int) -> None:
+        self._repository = repository
+        self._most_open = most_open
+
+    def write(self, change: SignalChange, now_ns: int) -> None:
+        """Write what a change means. Raises SQLAlchemyError where the database does not answer."""
+        log.info("a GOOSE signal", signal=change.signal.reference, is_on=change.is_on)
+        for motor in change.signal.motors:
+            try:
+                if change.signal.meaning is Meaning.TRIP:
+                    self._tell_trip(motor, change, now_ns)
+                elif change.is_on:
+                    self._repository.request_recording(
+                        motor, by=GOOSE, now_ns=now_ns, most_open=self._most_open
+                    )
+            except NotFoundError as error:
+                log.warning("a GOOSE signal has no motor", error=str(error))
+            except StorageError as error:
+                log.warning("a GOOSE signal asks for what is refused", error=str(error))
+
+    def _tell_trip(self, motor: str, change: SignalChange, now_ns: int) -> None:
+        place = AlarmPlace(motor=motor)
+        if not change.is_on:
+            self._repository.clear_alarms_at(
+                place, AlarmKind.MOTOR_TRIPPED, now_ns=now_ns, why="the relay's trip has fallen"
+            )
+            return
+        told = rfc3339(change.time_ns)[:23]
+        reason = f"{change.signal.reference} is on since {told}Z by the relay's clock"
+        self._repository.raise_alarm_at(
+            place, AlarmSpec(AlarmKind.MOTOR_TRIPPED, reason, one_of_kind=True), now_ns=now_ns
+        )

@@ -1,0 +1,66 @@
+"""Linux capabilities of this process: what it does not need it gives up (capabilities(7))."""
+
+import ctypes
+import os
+import sys
+from collections.abc import Collection
+from enum import IntEnum
+from typing import Final
+
+_VERSION_3: Final = 0x20080522
+_WORDS: Final = 2
+
+
+class Capability(IntEnum):
+    """Those that a process of the service may have use for."""
+
+    NET_RAW = 13
+    """Raw sockets."""
+
+
+class _Header(ctypes.Structure):
+    _fields_ = (("version", ctypes.c_uint32), ("process", ctypes.c_int))
+
+
+class _Word(ctypes.Structure):
+    _fields_ = (
+        ("effective", ctypes.c_uint32),
+        ("permitted", ctypes.c_uint32),
+        ("inheritable", ctypes.c_uint32),
+    )
+
+
+def keep_only(kept: Collection[Capability]) -> None:
+    """Give up all capabilities but these. Threads and processes that this thread starts have no others.
+
+    Raises OSError.
+    """
+    _limit(sum(1 << one for one in kept))
+
+
+def give_up(given_up: Collection[Capability]) -> None:
+    """Give up these capabilities, in this thread and what it starts.
+
+    Raises OSError.
+    """
+    _limit(~sum(1 << one for one in given_up))
+
+
+def _limit(allowed: int) -> None:
+    """Keep what is permitted and allowed. Nothing is inheritable then, so that nothing is ambient either."""
+    if sys.platform != "linux":
+        return
+    libc = ctypes.CDLL(None, use_errno=True)
+    header, words = _Header(_VERSION_3, 0), (_Word * _WORDS)()
+    _checked(libc.capget(ctypes.byref(header), words))
+    for place, word in enumerate(words):
+        word.permitted &= (allowed >> (32 * place)) & 0xFFFFFFFF
+        word.effective = word.permitted
+        word.inheritable = 0
+    _checked(libc.capset(ctypes.byref(header), words))
+
+
+def _checked(result: int) -> None:
+    if result:
+        number = ctypes.get_errno()
+        raise OSError(number, f"capabilities: {os.strerror(number)}")

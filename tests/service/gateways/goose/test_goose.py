@@ -1,0 +1,74 @@
+"""The gateway hears real frames, and what it makes of them is in the database."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import scl
+from service.configuration.gateways.goose import GooseSettings
+from service.configuration.gateways.settings import GatewaysSettings
+from service.configuration.settings import Settings
+from testing.relays.goose import with_goose
+from testing.service.gateways import started_gateways
+from testing.waiting import wait_until
+from tests.service.gateways.goose.plant import MOTORS
+
+IN_NAMESPACE = ("unshare", "--user", "--map-root-user", "--net")
+
+
+def test_a_trip_is_an_alarm_and_a_signal_asks_for_a_recording(tmp_path: Path) -> None:
+    """Trip, killed gateway, silence, a wrong revision, a bad quality, random octets, and the trip's end."""
+    if subprocess.run([*IN_NAMESPACE, "true"], capture_output=True, check=False).returncode:
+        pytest.skip("the kernel lets nobody make a network namespace here")
+    command = [*IN_NAMESPACE, sys.executable, "-m", "tests.service.gateways.goose.two_interfaces"]
+    done = subprocess.run([*command, str(tmp_path)], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr[-4000:]
+    found = json.loads(done.stdout.splitlines()[-1])
+    silent = found.pop("silent")
+    assert silent.startswith("6 of 6 GOOSE control blocks are not heard: A1_SEL710CFG/LLN0$GO$GPub01, ")
+    assert found == {
+        "capabilities": f"{1 << 13:016x}",  # CAP_NET_RAW alone
+        "alarm": ["PUMP-A1", "high", "A1_SEL710PRO/TRIPPTRC1.Tr.general is on"],
+        "requests": [["FAN-A2", "request"]],
+        "raises after the kill": [1],
+        "requests after the kill": 1,
+        "alarms after a wrong revision": 1,
+        "alarms after a wrong quality": 1,
+        "alarms after the truth": 0,
+    }
+
+
+@pytest.mark.parametrize(
+    ("settings", "told"),
+    [
+        (GooseSettings(interface="nosuch0"), "nosuch0: expected a network interface of this machine"),
+        (
+            GooseSettings.model_validate(
+                {"interface": "lo", "triggers": [{"signal": "A1_SEL710PRO/TRIPPTRC1.Nothing"}]}
+            ),
+            "(GSEControl) of the SCD send, found A1_SEL710PRO/TRIPPTRC1.Nothing in none",
+        ),
+        (
+            GooseSettings.model_validate(
+                {
+                    "interface": "lo",
+                    "triggers": [{"signal": "A1_SEL710PRO/TRIPPTRC1.Tr", "motors": ["PUMP-X"]}],
+                }
+            ),
+            "expected motors of the plant, found PUMP-X",
+        ),
+    ],
+)
+def test_what_keeps_it_from_listening_is_told(tmp_path: Path, settings: GooseSettings, told: str) -> None:
+    with_goose(scl.DEMO_PLANT_SCD, tmp_path / "plant.scd")
+    chosen = Settings(
+        data_directory=tmp_path,
+        scd=tmp_path / "plant.scd",
+        motors=MOTORS,
+        gateways=GatewaysSettings(goose=settings),
+    )
+    with started_gateways(chosen) as gateways:
+        wait_until(lambda: told in (gateways.status()[0].problem or ""), told)

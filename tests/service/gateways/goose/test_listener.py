@@ -1,0 +1,146 @@
+"""What messages of a relay mean, without a network."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import scl
+from mms import BitString, Quality, Timestamp, Validity, Value
+from mms.goose import GooseFrame, GooseMessage, encode_frame
+from service.configuration.gateways.goose import GooseSettings, GooseTrigger
+from service.gateways.goose.listener import GooseListener
+from service.gateways.goose.signals import Meaning, SignalError, WatchedBlock, watched_blocks
+from service.plant import Plant
+from tests.service.gateways.goose.plant import goose_plant
+
+NOW_NS = 1_760_000_000 * 10**9
+TRIP = "A1_SEL710PRO/TRIPPTRC1.Tr"
+JAM = "A1_SEL710PRO/JAMPTOC1.Op.general"
+GOOD = Quality().bits
+MESSAGE = GooseMessage(
+    control_block="A1_SEL710CFG/LLN0$GO$GPub01",
+    time_allowed_to_live_ms=2000,
+    data_set="A1_SEL710CFG/LLN0$DSet04",
+    goose_id="A1_SEL710",
+    time=Timestamp(NOW_NS),
+    state_number=1,
+    sequence_number=0,
+    simulation=False,
+    configuration_revision=3,
+    needs_commissioning=False,
+    values=(),
+)
+
+
+@pytest.fixture(scope="module")
+def plant(tmp_path_factory: pytest.TempPathFactory) -> tuple[scl.Scl, Plant]:
+    return goose_plant(tmp_path_factory.mktemp("plant"))
+
+
+def blocks(
+    plant: tuple[scl.Scl, Plant], *triggers: GooseTrigger, trips: bool = True
+) -> tuple[WatchedBlock, ...]:
+    return watched_blocks(GooseSettings(interface="eth1", triggers=triggers, trips=trips), *plant)
+
+
+def frame(*, trip: bool = False, jam: bool = False, quality: BitString = GOOD, **changes: object) -> bytes:
+    off: Value = (False, GOOD, Timestamp(NOW_NS))
+    values = ((trip, quality, Timestamp(NOW_NS)), off, off, (jam, GOOD, Timestamp(NOW_NS)), *(off,) * 5)
+    message = replace(MESSAGE, values=values, **changes)  # type: ignore[arg-type] # fields by name
+    return encode_frame(GooseFrame(bytes.fromhex("010ccd010000"), bytes(6), 0x3001, message))
+
+
+def test_every_relay_of_a_motor_is_watched_for_its_trip(plant: tuple[scl.Scl, Plant]) -> None:
+    found = blocks(plant)
+    assert len(found) == 6
+    (signal,) = found[0].signals
+    assert (signal.reference, signal.meaning, signal.motors) == (
+        f"{TRIP}.general",
+        Meaning.TRIP,
+        ("PUMP-A1",),
+    )
+    assert found[0].subscribed.destination == bytes.fromhex("010ccd010000")
+
+
+def test_a_trip_is_told_once_and_its_end_too(plant: tuple[scl.Scl, Plant]) -> None:
+    listener = GooseListener(blocks(plant))
+    told = [
+        [(change.signal.meaning, change.is_on, change.time_ns) for change in listener.receive(octets, now_s)]
+        for now_s, octets in (
+            (0.0, frame()),
+            (0.1, frame(trip=True, state_number=2)),
+            (0.2, frame(trip=True, state_number=2, sequence_number=1)),
+            (0.3, frame(state_number=3)),
+        )
+    ]
+    trip = Meaning.TRIP
+    assert told == [[(trip, False, NOW_NS)], [(trip, True, NOW_NS)], [], [(trip, False, NOW_NS)]]
+
+
+def test_what_is_not_of_the_relay_as_configured_changes_nothing(plant: tuple[scl.Scl, Plant]) -> None:
+    listener = GooseListener(blocks(plant))
+    assert listener.receive(frame(state_number=5), 0.0)
+    bad = Quality(validity=Validity.QUESTIONABLE).bits
+    for octets in (
+        frame(trip=True, state_number=4),  # replayed
+        frame(trip=True, state_number=6, configuration_revision=4),
+        frame(trip=True, state_number=6, simulation=True),
+        frame(trip=True, state_number=6, needs_commissioning=True),
+        frame(trip=True, state_number=6, quality=bad),
+        frame(trip=True, state_number=7, quality=Quality(test=True).bits),
+        frame(trip=True, state_number=8, quality=BitString(())),
+    ):
+        assert listener.receive(octets, 0.1) == []
+    assert [change.is_on for change in listener.receive(frame(trip=True, state_number=9), 0.2)] == [True]
+
+
+def test_a_trip_that_stands_when_it_begins_to_listen_is_told_and_an_old_trigger_is_not(
+    plant: tuple[scl.Scl, Plant],
+) -> None:
+    listener = GooseListener(blocks(plant, GooseTrigger(signal=JAM)))
+    told = listener.receive(frame(trip=True, jam=True, state_number=7, sequence_number=40), 0.0)
+    assert [change.signal.meaning for change in told] == [Meaning.TRIP]
+    told = listener.receive(frame(trip=True, state_number=8), 0.1)
+    told += listener.receive(frame(trip=True, jam=True, state_number=9), 0.2)
+    assert [(change.signal.meaning, change.is_on) for change in told] == [
+        (Meaning.TRIGGER, False),
+        (Meaning.TRIGGER, True),
+    ]
+
+
+def test_a_block_that_falls_silent_is_named_with_the_reason(plant: tuple[scl.Scl, Plant]) -> None:
+    listener = GooseListener(blocks(plant)[:1])
+    told = [listener.problem]
+    listener.receive(frame(), 0.0)
+    told.append(listener.problem)
+    listener.expire(2.1)
+    listener.receive(frame(configuration_revision=9), 2.2)
+    told.append(listener.problem)
+    silent = f"1 of 1 GOOSE control blocks are not heard: {MESSAGE.control_block}"
+    assert told == [silent, None, f"{silent} (another confRev than configured)"]
+
+
+def test_a_trigger_of_a_relay_without_motors_names_them(plant: tuple[scl.Scl, Plant]) -> None:
+    document, known = plant
+    alone = replace(known, motors=known.motors[1:])
+    with pytest.raises(SignalError, match="expected motors, found none"):
+        blocks((document, alone), GooseTrigger(signal=JAM))
+    (watched,) = blocks((document, alone), GooseTrigger(signal=JAM, motors=("FAN-A2",)), trips=False)
+    assert [signal.motors for signal in watched.signals] == [("FAN-A2",)]
+
+
+def test_an_scd_without_goose_is_refused(tmp_path: Path, plant: tuple[scl.Scl, Plant]) -> None:
+    with pytest.raises(SignalError, match=r"expected GOOSE control blocks \(GSEControl\)"):
+        blocks((scl.read(scl.DEMO_PLANT_SCD), plant[1]))
+
+
+@given(place=st.integers(0, 200), octet=st.integers(0, 255), cut=st.integers(0, 300))
+def test_garbled_frames_raise_nothing(plant: tuple[scl.Scl, Plant], place: int, octet: int, cut: int) -> None:
+    listener = GooseListener(blocks(plant)[:1])
+    octets = bytearray(frame(trip=True))
+    octets[place % len(octets)] = octet
+    listener.receive(bytes(octets[: cut or None]), 0.0)
+    assert listener.garbled + listener.foreign <= 1
