@@ -117,3 +117,27 @@ def test_the_worse_one_of_winding_and_rotor_is_the_health_of_a_motor(
     state: State, kind: Kind, stale: bool, rotor: RotorState | None, expected: DeviceHealth
 ) -> None:
     assert health_of_motor(state, kind, stale=stale, rotor=rotor) is expected
+
+
+def test_a_clock_that_jumps_makes_values_old_and_good_again_and_stops_nothing(
+    repository: Repository, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    wall_ns = NOW_NS
+    monkeypatch.setattr("service.gateways.plant_state.following.SHORTEST_PAUSE_S", 0.0)
+    monkeypatch.setattr("service.gateways.plant_state.following.SHARE", 0)
+    monkeypatch.setattr("service.gateways.plant_state.following.REFRESH_S", 0.05)
+    monkeypatch.setattr("service.gateways.plant_state.following.time.time_ns", lambda: wall_ns)
+    tell(repository, HEALTHY)
+    follower = PlantFollower(repository, stale_after_days=7, period_s=0.01)
+    try:
+        assert next_change(follower).now.motors["PUMP-A1"].quality is Quality.GOOD
+        wall_ns = NOW_NS + 3650 * NANOSECONDS_PER_DAY
+        assert next_change(follower).now.motors["PUMP-A1"].quality is Quality.UNCERTAIN
+        # Behind the time of the record: it is of the future, and not old.
+        wall_ns = NOW_NS - 3650 * NANOSECONDS_PER_DAY
+        assert next_change(follower).now.motors["PUMP-A1"].quality is Quality.GOOD
+        tell(repository, FAULT)
+        assert next_change(follower).now.motors["PUMP-A1"].state is State.FAULT
+        assert follower.problem is None
+    finally:
+        follower.close()
