@@ -29,6 +29,9 @@ ANALOGUES: Final = (
 INTEGERS: Final = ("kind of what stands out, see the documentation", "rotor: 0 none, 1 watch, 2 fault")
 """What GGIO1.IntIn1 and so on are."""
 
+UNBALANCES: Final = ("ImbNgV", "ImbNgA")
+"""Of MSQI1: negative over positive sequence of voltage and current [%]."""
+
 _E: Final = ElementMaker(namespace=NAMESPACE, nsmap={None: NAMESPACE})
 _TRIGGERS: Final = {"dchg": "true", "qchg": "true", "gi": "true", "period": "true"}
 _SHOWN: Final = {
@@ -42,6 +45,7 @@ _OF_MOTOR: Final = (
     ("", "GAPC", "1", ("Str", "Op"), "ST"),
     ("", "GGIO", "1", tuple(f"IntIn{number}" for number in range(1, len(INTEGERS) + 1)), "ST"),
     ("", "GGIO", "1", tuple(f"AnIn{number}" for number in range(1, len(ANALOGUES) + 1)), "MX"),
+    ("", "MSQI", "1", UNBALANCES, "MX"),
 )
 """Members of a motor's data set: prefix, class and instance of the node, its objects, and the constraint."""
 _OF_PLANT: Final = (("", "CALH", "1", ("GrAlm", "GrWrn"), "ST"),)
@@ -52,7 +56,7 @@ def description(ied: str, motors: Mapping[str, str], *, plant: str, revision: st
     devices = [
         _device(plant, "The plant", _OF_PLANT, ("LPHD", "CALH")),
         *(
-            _device(device, text, _OF_MOTOR, ("LPHD", "ZMOT", "GAPC", "GGIO"))
+            _device(device, text, _OF_MOTOR, ("LPHD", "ZMOT", "GAPC", "GGIO", "MSQI"))
             for device, text in motors.items()
         ),
     ]
@@ -134,6 +138,7 @@ def _templates() -> etree._Element:
             **{f"IntIn{number}": "INS" for number in range(1, len(INTEGERS) + 1)},
             **{f"AnIn{number}": "MV" for number in range(1, len(ANALOGUES) + 1)},
         },
+        "MSQI": {"Beh": "Beh", **dict.fromkeys(UNBALANCES, "MV")},
         "CALH": {"Beh": "Beh", "GrAlm": "SPS", "GrWrn": "SPS"},
     }
     return _E.DataTypeTemplates(

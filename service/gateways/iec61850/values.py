@@ -8,7 +8,7 @@ from core.condition.kinds import State
 from core.rotor.finding import RotorState
 from mms import GOOD, Timestamp, Validity, Value
 from mms import Quality as MmsQuality
-from service.gateways.iec61850.description import ANALOGUES, INTEGERS
+from service.gateways.iec61850.description import ANALOGUES, INTEGERS, UNBALANCES
 from service.gateways.kind_codes import KIND_CODES, ROTOR_CODES
 from service.gateways.plant_state.device_health import DeviceHealth
 from service.gateways.plant_state.figures import MotorFigures, PlantState, Quality, RelayFigures
@@ -42,6 +42,7 @@ def motor_values(device: str, motor: MotorFigures, relay: RelayFigures | None) -
         **_state(f"{device}/GGIO1.IntIn1", KIND_CODES.index(motor.kind), quality, time),
         **_state(f"{device}/GGIO1.IntIn2", _rotor_code(motor.rotor), quality, time),
         **_relay_values(device, relay),
+        **_unbalances(device, motor, quality),
     }
     for number, figure in enumerate(figures, start=1):
         values |= _analogue(f"{device}/GGIO1.AnIn{number}", figure, quality, time)
@@ -55,6 +56,7 @@ def unknown_values(device: str) -> Values:
     objects = ["ZMOT1.EEHealth", "GAPC1.Str", "GAPC1.Op", "LPHD1.PhyHealth", "LPHD1.Proxy"]
     objects += [f"GGIO1.IntIn{number}" for number in range(1, len(INTEGERS) + 1)]
     objects += [f"GGIO1.AnIn{number}" for number in range(1, len(ANALOGUES) + 1)]
+    objects += [f"MSQI1.{name}" for name in UNBALANCES]
     for name in objects:
         values |= {f"{device}/{name}.q": bad, f"{device}/{name}.t": time}
     return values
@@ -118,6 +120,17 @@ def _relay_values(device: str, relay: RelayFigures | None) -> Values:
         **_state(f"{device}/LPHD1.PhyHealth", health, quality, time),
         **_state(f"{device}/LPHD1.Proxy", True, GOOD, time),  # noqa: FBT003 - the value of the attribute
     }
+
+
+def _unbalances(device: str, motor: MotorFigures, quality: MmsQuality) -> Values:
+    """Return the unbalance in the latest record that tells it; it is old where a later record does not."""
+    time = Timestamp(motor.unbalance_ns or 0)
+    if quality == GOOD and (motor.unbalance_ns or 0) < (motor.as_of_ns or 0):
+        quality = MmsQuality(Validity.QUESTIONABLE, old_data=True)
+    values: Values = {}
+    for name, figure in zip(UNBALANCES, (motor.voltage_unbalance, motor.current_unbalance), strict=True):
+        values |= _analogue(f"{device}/MSQI1.{name}", figure, quality, time)
+    return values
 
 
 def _state(name: str, value: Value, quality: MmsQuality, time: Timestamp) -> Values:

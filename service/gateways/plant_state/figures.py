@@ -29,6 +29,8 @@ class MotorFigures:
     since the reference; each with its 95 % interval.  detection_limit, load_level: of the latest record that
     has them.  rotor: what its standing alarm says.  device_health: the worst of all that.
     since_ns: when the state began.  as_of_ns: time of the latest record in it, and of all values.
+    voltage_unbalance, current_unbalance: negative over positive sequence, of the latest record that has them,
+    at unbalance_ns.
     alarms: how many call for somebody; priority: of the most urgent one.
     quality, quality_reason: of all figures; the reason is None where it is good.
     """
@@ -57,6 +59,9 @@ class MotorFigures:
     priority: AlarmPriority | None
     quality: Quality
     quality_reason: str | None
+    voltage_unbalance: float | None = None
+    current_unbalance: float | None = None
+    unbalance_ns: int | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

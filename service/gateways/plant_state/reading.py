@@ -7,7 +7,7 @@ from core.condition.verdict.advice import advice
 from service.condition.staleness import is_stale, stale_after_ns
 from service.gateways.plant_state.device_health import health_of_motor, health_of_relay
 from service.gateways.plant_state.figures import MotorFigures, PlantState, Quality, RelayFigures
-from service.storage.records import Cursor, FleetMotor, IedEntry, Page
+from service.storage.records import Cursor, FleetMotor, IedEntry, Page, UnbalanceEntry
 from service.storage.repository import Repository
 
 PAGE = 500
@@ -23,7 +23,10 @@ def read_plant_state(repository: Repository, *, now_ns: int, stale_after_days: f
 
     Raises SQLAlchemyError where the database does not answer.
     """
-    motors = [_motor(one, now_ns, stale_after_days) for one in repository.fleet()]
+    unbalances = {one.motor: one for one in repository.latest_unbalances()}
+    motors = [
+        _motor(one, unbalances.get(one.motor.name), now_ns, stale_after_days) for one in repository.fleet()
+    ]
     relays = [_relay(one) for one in _all(lambda after: repository.relays(limit=PAGE, after=after))]
     alarms = repository.open_alarms(limit=MOST_ALARMS).items
     return PlantState(
@@ -42,7 +45,9 @@ def _all(page_after: Callable[[Cursor | None], Page[IedEntry]]) -> Iterator[IedE
         yield from page.items
 
 
-def _motor(one: FleetMotor, now_ns: int, stale_after_days: float | None) -> MotorFigures:
+def _motor(
+    one: FleetMotor, unbalance: UnbalanceEntry | None, now_ns: int, stale_after_days: float | None
+) -> MotorFigures:
     condition = one.condition
     stale = is_stale(condition, now_ns, stale_after_ns(one.motor.schedule, stale_after_days))
     rotor = None if one.rotor is None else one.rotor.state
@@ -72,6 +77,9 @@ def _motor(one: FleetMotor, now_ns: int, stale_after_days: float | None) -> Moto
         priority=None if one.alarms is None else one.alarms.priority,
         quality=quality,
         quality_reason=reason,
+        voltage_unbalance=None if unbalance is None else unbalance.voltage_unbalance_iec,
+        current_unbalance=None if unbalance is None else unbalance.current_unbalance,
+        unbalance_ns=None if unbalance is None else unbalance.time_ns,
     )
 
 

@@ -90,6 +90,7 @@ from service.storage.records.rotor_and_supply import (
     SupplyEntry,
     SupplyQuantity,
     SwingEntry,
+    UnbalanceEntry,
 )
 from service.storage.records.starts import (
     ImportedStart,
@@ -197,6 +198,7 @@ __all__ = [
     "ToObserve",
     "TrackedPoint",
     "TrendPoint",
+    "UnbalanceEntry",
     "User",
     "UserSession",
     "interval_of",

@@ -29,6 +29,16 @@ class SupplyEntry:
 
 
 @dataclass(frozen=True, slots=True)
+class UnbalanceEntry:
+    """Unbalance of voltage and current in a motor's latest recording that tells it (V2 / V1, I2 / I1)."""
+
+    motor: str
+    time_ns: int
+    voltage_unbalance_iec: float
+    current_unbalance: float | None
+
+
+@dataclass(frozen=True, slots=True)
 class SwingEntry:
     """What a recording shows of its motor's air gap, and of a load that swings."""
 

@@ -5,11 +5,11 @@ from dataclasses import fields
 from typing import Any, Final
 
 from sqlalchemy import Select, case, delete, func, select
-from sqlalchemy.orm import Session
+from sqlalchemy.orm import Session, aliased
 
 from core.supply.figures import SupplyFigures
 from service.storage.models import MotorRow, SupplyFiguresRow
-from service.storage.records import Cursor, Page, RecordsBeyond, SupplyEntry, SupplyQuantity
+from service.storage.records import Cursor, Page, RecordsBeyond, SupplyEntry, SupplyQuantity, UnbalanceEntry
 from service.storage.repository.sessions import Order, Sessions, columns_of, found, latest_of, page_of, within
 from service.storage.texts import storable
 
@@ -41,6 +41,25 @@ class SupplyRows(Sessions):
         """Return what a motor's latest recordings show of its supply, oldest first."""
         with self._read() as session:
             return latest_of(session, _of_motor(motor), _ORDER, _entry, limit=limit)
+
+    def latest_unbalances(self) -> tuple[UnbalanceEntry, ...]:
+        """Return the unbalance of the latest recording of each motor in service that tells it."""
+        figures = aliased(SupplyFiguresRow)
+        latest = (
+            select(figures.recording_id)
+            .where(figures.motor == MotorRow.name)
+            .order_by(figures.time_ns.desc(), figures.recording_id.desc())
+            .limit(1)
+            .scalar_subquery()
+        )
+        query = (
+            select(*columns_of(UnbalanceEntry, SupplyFiguresRow))
+            .select_from(MotorRow)
+            .join(SupplyFiguresRow, SupplyFiguresRow.recording_id == latest)
+            .where(MotorRow.in_service)
+        )
+        with self._read() as session:
+            return tuple(UnbalanceEntry(*row) for row in session.execute(query))
 
     def supply_beyond(
         self,

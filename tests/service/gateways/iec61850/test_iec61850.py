@@ -21,20 +21,23 @@ from open61850 import scl as open_scl
 from open61850.mms import rcb as open_rcb
 
 import scl
-from mms import Client, FunctionalConstraint, MmsError, Timestamp, Validity
+from mms import GOOD, Client, FunctionalConstraint, MmsError, Timestamp, Validity
 from mms import Quality as MmsQuality
 from mms.values import BitString
 from service.configuration.gateways.iec61850 import Iec61850Settings
 from service.configuration.gateways.settings import GatewaysSettings
 from service.configuration.settings import Settings
 from service.gateways.iec61850.logical_devices import LONGEST, logical_devices
+from service.recording_store.folder import FolderStore
 from service.storage import Repository
 from service.storage.states import LinkState
 from testing.ports import LOOPBACK, free_port
 from testing.service.conditions import FAULT, HEALTHY, tell
 from testing.service.gateways import running_gateways
+from testing.service.job_runner import register_runner
 from testing.service.links import set_link_state
-from testing.service.plants import NOW_NS, two_motor_plant
+from testing.service.plants import NOW_NS, SECOND_NS, two_motor_plant
+from testing.service.rotor_and_supply import SUPPLY, ExaminedRecordings
 from testing.waiting import eventually
 
 PUMP, FAN = "MCCPUMP_A1", "MCCFAN_A2"
@@ -91,6 +94,25 @@ def test_a_fault_is_seen_with_its_phase_time_and_quality(repository: Repository,
     assert quality(client, f"{PUMP}/GGIO1.AnIn5", MEASURED).validity is Validity.INVALID
     assert client.read(f"{PUMP}/LPHD1.Proxy.stVal", STATUS) is True
     assert client.read("MCCPLANT/CALH1.GrAlm.stVal", STATUS) is True
+
+
+def test_the_unbalance_is_that_of_the_latest_record_and_old_where_a_later_one_has_none(
+    repository: Repository, client: Client, tmp_path: Path
+) -> None:
+    register_runner(repository)
+    examined = ExaminedRecordings(repository, FolderStore(tmp_path / "recordings"))
+    examined.add(None, replace(SUPPLY, voltage_unbalance_iec=0.05), at_ns=NOW_NS - SECOND_NS)
+    examined.add(None, replace(SUPPLY, current_unbalance=None), at_ns=NOW_NS)
+    tell(repository, HEALTHY)
+    voltage = f"{PUMP}/MSQI1.ImbNgV"
+    assert eventually(lambda: client.read(f"{voltage}.mag.f", MEASURED) == pytest.approx(0.71))
+    assert eventually(lambda: quality(client, voltage, MEASURED) == GOOD)
+    time = client.read(f"{voltage}.t", MEASURED)
+    assert isinstance(time, Timestamp)
+    assert time.ns == pytest.approx(NOW_NS, abs=100)
+    assert quality(client, f"{PUMP}/MSQI1.ImbNgA", MEASURED).validity is Validity.INVALID
+    tell(repository, replace(HEALTHY, as_of_ns=NOW_NS + SECOND_NS), now_ns=NOW_NS + SECOND_NS)
+    assert eventually(lambda: quality(client, voltage, MEASURED).old_data)
 
 
 def test_a_relay_that_does_not_answer_is_no_good_physical_device(
