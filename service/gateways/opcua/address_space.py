@@ -5,6 +5,7 @@ from typing import Final
 
 from asyncua import Node, Server, ua
 
+from service.gateways.opcua.item_state import ItemState, state_values
 from service.gateways.opcua.values import (
     HISTORIES,
     INITIAL,
@@ -70,10 +71,15 @@ class PlantNodes:
             if f"motor/{motor.name}" not in self._devices:
                 await self._add_motor(motor)
             await self._write_motor(motor)
+            await self._write_item_state(motor, change.now.relays.get(motor.relay))
         for relay in change.relays:
             if f"relay/{relay.name}" not in self._devices:
                 await self._add_relay(relay)
             await self._write_relay(relay)
+        changed = {relay.name for relay in change.relays}
+        for motor in change.now.motors.values():
+            if motor.relay in changed:
+                await self._write_item_state(motor, change.now.relays[motor.relay])
 
     def motor_node(self, motor: str) -> ua.NodeId:
         """Return the node of a motor, known or not."""
@@ -94,6 +100,32 @@ class PlantNodes:
         )
         for variable in MOTOR_VARIABLES:
             await self._add_variable(motor.name, monitoring, variable)
+        await self._add_item_state(node, f"motor/{motor.name}")
+
+    async def _add_item_state(self, node: Node, path: str) -> None:
+        blocks = await node.add_folder(
+            ua.NodeId(f"{path}/MachineryBuildingBlocks", self._ours),
+            ua.QualifiedName("MachineryBuildingBlocks", self._machinery),
+        )
+        machine = await blocks.add_object(
+            ua.NodeId(f"{path}/MachineryItemState", self._ours),
+            ua.QualifiedName("MachineryItemState", self._machinery),
+        )
+        state = await machine.add_variable(
+            ua.NodeId(f"{path}/MachineryItemState/CurrentState", self._ours),
+            ua.QualifiedName("CurrentState", 0),
+            ua.Variant(ua.LocalizedText(""), ua.VariantType.LocalizedText),
+        )
+        await state.add_property(
+            ua.NodeId(f"{path}/MachineryItemState/CurrentState/Id", self._ours),
+            ua.QualifiedName("Id", 0),
+            ua.Variant(ua.NodeId(int(ItemState.NOT_AVAILABLE), self._machinery), ua.VariantType.NodeId),
+        )
+
+    async def _write_item_state(self, motor: MotorFigures, relay: RelayFigures | None) -> None:
+        path = f"motor/{motor.name}/MachineryItemState/CurrentState"
+        state, node = state_values(motor, relay, self._machinery)
+        await self._write({path: state, f"{path}/Id": node})
 
     async def _add_variable(self, motor: str, parent: Node, variable: MotorVariable) -> None:
         node_id = ua.NodeId(f"motor/{motor}/{variable.name}", self._ours)

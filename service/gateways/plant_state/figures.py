@@ -30,7 +30,7 @@ class MotorFigures:
     has them.  rotor: what its standing alarm says.  device_health: the worst of all that.
     since_ns: when the state began.  as_of_ns: time of the latest record in it, and of all values.
     voltage_unbalance, current_unbalance: negative over positive sequence, of the latest record that has them,
-    at unbalance_ns.
+    at unbalance_ns.  stood_ns: when the motor was last seen to stand; None where it never was.
     alarms: how many call for somebody; priority: of the most urgent one.
     quality, quality_reason: of all figures; the reason is None where it is good.
     """
@@ -62,6 +62,7 @@ class MotorFigures:
     voltage_unbalance: float | None = None
     current_unbalance: float | None = None
     unbalance_ns: int | None = None
+    stood_ns: int | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

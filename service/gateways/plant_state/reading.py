@@ -79,6 +79,7 @@ def _motor(
         quality_reason=reason,
         voltage_unbalance=None if unbalance is None else unbalance.voltage_unbalance_iec,
         current_unbalance=None if unbalance is None else unbalance.current_unbalance,
+        stood_ns=condition.stood_ns,
         unbalance_ns=None if unbalance is None else unbalance.time_ns,
     )
 

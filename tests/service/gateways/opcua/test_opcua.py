@@ -129,6 +129,28 @@ def test_a_fault_is_a_failure_with_the_time_of_its_record(
     assert value(open_settings, f"{PUMP}/Phase").Value.Value == "b"
 
 
+def test_the_state_of_a_machine_follows_its_relay_and_its_records(
+    repository: Repository, open_settings: Settings
+) -> None:
+    path = f"{PUMP}/MachineryItemState/CurrentState"
+
+    def told() -> tuple[str, int]:
+        return value(open_settings, path).Value.Value.Text, value(
+            open_settings, f"{path}/Id"
+        ).Value.Value.Identifier
+
+    assert told() == ("NotAvailable", 5005)
+    tell(repository, HEALTHY)
+    set_link_state(repository, "A1_SEL710", LinkState.UP, now_ns=NOW_NS, reason=None)
+    assert eventually(lambda: told() == ("Executing", 5006))
+    assert value(open_settings, path).SourceTimestamp.timestamp() * 10**9 == NOW_NS
+    later_ns = NOW_NS + 10**9
+    assert repository.skip_recording("PUMP-A1", "it stands", due_ns=later_ns, now_ns=later_ns)
+    assert eventually(lambda: told() == ("NotExecuting", 5007))
+    set_link_state(repository, "A1_SEL710", LinkState.DOWN, now_ns=NOW_NS, reason="no answer")
+    assert eventually(lambda: told() == ("NotAvailable", 5005))
+
+
 def test_an_old_condition_is_uncertain(repository: Repository, tmp_path: Path) -> None:
     tell(repository, HEALTHY)
     chosen = settings_of(tmp_path, anonymous=True, unencrypted=True)
