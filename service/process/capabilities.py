@@ -53,10 +53,14 @@ def _limit(allowed: int) -> None:
     libc = ctypes.CDLL(None, use_errno=True)
     header, words = _Header(_VERSION_3, 0), (_Word * _WORDS)()
     _checked(libc.capget(ctypes.byref(header), words))
+    given_up = False
     for place, word in enumerate(words):
-        word.permitted &= (allowed >> (32 * place)) & 0xFFFFFFFF
-        word.effective = word.permitted
+        kept = word.permitted & (allowed >> (32 * place)) & 0xFFFFFFFF
+        given_up |= word.permitted != kept
+        word.permitted = word.effective = kept
         word.inheritable = 0
+    if not given_up:
+        return
     _checked(libc.capset(ctypes.byref(header), words))
 
 

@@ -1,8 +1,7 @@
 """The GOOSE gateway: a socket is read on a thread of its own, so that no message waits for the database."""
 
 import time
-from queue import Empty, Full, Queue
-from threading import Event, Thread
+from threading import Condition, Event, Thread
 from typing import Final
 
 import structlog
@@ -15,7 +14,7 @@ from service.alarms.kinds import AlarmKind
 from service.configuration.settings import Settings
 from service.gateways.context import GatewayContext
 from service.gateways.goose.listener import GooseListener, SignalChange
-from service.gateways.goose.signals import Meaning, SignalError, destinations, watched_blocks
+from service.gateways.goose.signals import Meaning, Signal, SignalError, destinations, watched_blocks
 from service.plant import PlantError, read_plant
 from service.storage import NotFoundError, Repository, StorageError
 from service.storage.records import Actor, AlarmPlace, AlarmSpec
@@ -29,21 +28,28 @@ REOPEN_S: Final = 5.0
 """Between attempts to have the socket."""
 RETRY_S: Final = 1.0
 """Between attempts while the database does not answer."""
-MOST_WAITING: Final = 10_000
-"""Changes of signals that wait for the database."""
 GOOSE: Final = Actor("goose", "service")
 """Who asked for a recording, in the audit trail."""
 
 
 def run(context: GatewayContext) -> None:
     """Listen until the service is gone."""
-    receiver = _receiver(context)
-    if receiver is None:
-        return
-    receiver.start()
     writer = SignalWriter(context.repository, context.settings.max_open_requests)
-    while not context.stop.is_set():
-        change = receiver.next_change(LOOK_S)
+    changes = PendingChanges()
+    while (receiver := _receiver(context, changes)) is not None:
+        receiver.start()
+        try:
+            _write_changes(context, receiver, changes, writer)
+        finally:
+            receiver.stop()
+
+
+def _write_changes(
+    context: GatewayContext, receiver: "Receiver", changes: "PendingChanges", writer: "SignalWriter"
+) -> None:
+    """Write what is heard until the receiver ends: the service is gone, or the interface is."""
+    while receiver.is_listening:
+        change = changes.wait_for_next(LOOK_S)
         while change is not None and not context.stop.is_set():
             try:
                 writer.write(change, time.time_ns())
@@ -52,14 +58,13 @@ def run(context: GatewayContext) -> None:
                 context.tell(f"the database does not answer: {database_trouble(error)}")
                 context.stop.wait(RETRY_S)
         context.tell(receiver.problem)
-    receiver.stop()
 
 
-def _receiver(context: GatewayContext) -> "Receiver | None":
+def _receiver(context: GatewayContext, changes: "PendingChanges") -> "Receiver | None":
     """Return what listens; None where the service is gone before it can."""
     while not context.stop.is_set():
         try:
-            return Receiver(context.settings, context.stop)
+            return Receiver(context.settings, context.stop, changes)
         except RawSocketError as error:  # An interface may come up later.
             context.tell(str(error))
             context.stop.wait(REOPEN_S)
@@ -73,7 +78,7 @@ def _receiver(context: GatewayContext) -> "Receiver | None":
 class Receiver:
     """Reads the socket on a thread of its own."""
 
-    def __init__(self, settings: Settings, stop: Event) -> None:
+    def __init__(self, settings: Settings, stop: Event, changes: "PendingChanges") -> None:
         """Raises PlantError, SclError, SignalError, RawSocketError."""
         chosen = settings.gateways.goose
         assert chosen is not None  # noqa: S101 - it was started for them
@@ -85,9 +90,9 @@ class Receiver:
         self._socket.wait_at_most(LOOK_S)
         self._interface = chosen.interface
         self._stop = stop
-        self._changes: Queue[SignalChange] = Queue(MOST_WAITING)
-        self._trouble: str | None = None
-        self._lost = 0
+        self._changes = changes
+        self.problem: str | None = self._listener.problem
+        """What does not work; None where all does."""
         self._thread = Thread(target=self._run, name="GOOSE receiver", daemon=True)
         log.info("listening to GOOSE", interface=chosen.interface, blocks=len(blocks))
 
@@ -96,45 +101,63 @@ class Receiver:
         self._thread.start()
 
     def stop(self) -> None:
-        """Wait for the thread, which ends by the event, and close the socket."""
+        """Wait for the thread, which has ended or does so by the event, and close the socket."""
         self._thread.join()
         self._socket.close()
 
-    def next_change(self, longest_s: float) -> SignalChange | None:
-        """Return the next change of a signal; None where there was none for so long."""
-        try:
-            return self._changes.get(timeout=longest_s)
-        except Empty:
-            return None
-
     @property
-    def problem(self) -> str | None:
-        """Return what does not work; None where all does."""
-        if self._lost:
-            return f"{self._lost} changes of signals came while the database did not answer, and were lost"
-        return self._trouble or self._listener.problem
+    def is_listening(self) -> bool:
+        """Whether the socket is still read."""
+        return self._thread.is_alive()
 
     def _run(self) -> None:
+        looked_s = 0.0
         while not self._stop.is_set():
+            octets = None
             try:
                 octets = self._socket.receive()
-                self._trouble = None
             except TimeoutError:
-                octets = None
-            except OSError as error:
-                self._trouble = f"{self._interface}: {error}"
-                self._stop.wait(LOOK_S)
-                continue
+                pass
+            except OSError as error:  # The interface is down or gone: a new socket is had once it is back.
+                self.problem = f"{self._interface}: {error}"
+                log.warning("the interface for GOOSE fails", interface=self._interface, error=str(error))
+                return
             now_s = time.monotonic()
             for change in self._listener.receive(octets, now_s) if octets else ():
-                self._keep(change)
-            self._listener.expire(now_s)
+                self._changes.add(change)
+            if now_s - looked_s >= LOOK_S:
+                looked_s = now_s
+                self._listener.expire(now_s)
+                self.problem = self._listener.problem
 
-    def _keep(self, change: SignalChange) -> None:
-        try:
-            self._changes.put_nowait(change)
-        except Full:
-            self._lost += 1
+
+class PendingChanges:
+    """Changes of signals that wait for the database.
+
+    The latest rise and the latest fall of each signal are kept, in their order. So nothing grows while the
+    database is silent, no trip is lost, and the last state is that of the relay. A signal that rises several
+    times meanwhile asks for one record.
+    """
+
+    def __init__(self) -> None:
+        self._changed = Condition()
+        self._changes: dict[tuple[Signal, bool], SignalChange] = {}
+
+    def add(self, change: SignalChange) -> None:
+        """Put a change behind the others."""
+        key = change.signal, change.is_on
+        with self._changed:
+            self._changes.pop(key, None)
+            self._changes[key] = change
+            self._changed.notify()
+
+    def wait_for_next(self, longest_s: float) -> SignalChange | None:
+        """Take the next change; None where there was none for so long."""
+        with self._changed:
+            if not self._changes:
+                self._changed.wait(longest_s)
+            key = next(iter(self._changes), None)
+            return None if key is None else self._changes.pop(key)
 
 
 class SignalWriter:
@@ -161,14 +184,18 @@ class SignalWriter:
                 log.warning("a GOOSE signal asks for what is refused", error=str(error))
 
     def _tell_trip(self, motor: str, change: SignalChange, now_ns: int) -> None:
-        place = AlarmPlace(motor=motor)
+        place, subject = AlarmPlace(motor=motor), change.signal.reference
         if not change.is_on:
             self._repository.clear_alarms_at(
-                place, AlarmKind.MOTOR_TRIPPED, now_ns=now_ns, why="the relay's trip has fallen"
+                place,
+                AlarmKind.MOTOR_TRIPPED,
+                now_ns=now_ns,
+                subject=subject,
+                why="the relay's trip has fallen",
             )
             return
         told = rfc3339(change.time_ns)[:23]
-        reason = f"{change.signal.reference} is on since {told}Z by the relay's clock"
+        reason = f"{subject} is on since {told}Z by the relay's clock"
         self._repository.raise_alarm_at(
-            place, AlarmSpec(AlarmKind.MOTOR_TRIPPED, reason, one_of_kind=True), now_ns=now_ns
+            place, AlarmSpec(AlarmKind.MOTOR_TRIPPED, reason, subject), now_ns=now_ns
         )

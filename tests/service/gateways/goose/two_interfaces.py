@@ -30,7 +30,7 @@ from service.storage.records import Alarm, RecordingRequest
 from testing.ports import LOOPBACK, free_port
 from testing.relays.goose import APPLICATION_ID, BLOCK, DATA_SET, REVISION, with_goose
 from testing.service.database import make_database
-from testing.service.gateways import running_gateways, started_gateways
+from testing.service.gateways import started_gateways
 from testing.waiting import wait_until
 from tests.service.gateways.goose.plant import MOTORS
 
@@ -64,23 +64,30 @@ def main(directory: Path) -> None:
         protection=ProtectionSettings(overcurrent=DefiniteTime(0.2, TRIPS_AFTER_S)),
     )
     found: dict[str, object] = {}
-    with (
-        Simulator(document, {"A1_SEL710": trips}, files=directory / "relays", goose_interface="left"),
-        running_gateways(settings) as gateways,
-    ):
-        found["capabilities"] = _capabilities(gateways.status()[0].process_id)
-        wait_until(lambda: _alarms(repository), "the alarm of the trip")
-        wait_until(lambda: _requests(repository), "the request that the trip triggers")
-        (alarm,) = _alarms(repository)
-        found["alarm"] = [alarm.motor, alarm.priority.value, alarm.reason.split(" since ")[0]]
-        found["requests"] = [(one.motor, one.origin.value) for one in _requests(repository)]
-        _kill(gateways)
-        found["raises after the kill"] = [one.raises for one in _alarms(repository)]
-        found["requests after the kill"] = len(_requests(repository))
+    relays = Simulator(document, {"A1_SEL710": trips}, files=directory / "relays", goose_interface="left")
+    with started_gateways(settings) as gateways:
+        # It listens before anybody tells: what a trip triggers is over for one that comes later.
+        _problem(gateways, "not heard")
+        with relays:
+            wait_until(lambda: gateways.status()[0].problem is None, "all relays to be heard")
+            _trip(gateways, repository, found)
     with started_gateways(settings) as gateways, RawSocket("left") as sender:
         found["silent"] = _problem(gateways, "not heard")
         _lie(sender, repository, found)
     print(json.dumps(found))  # noqa: T201 - the test reads it
+
+
+def _trip(gateways: PlantGateways, repository: Repository, found: dict[str, object]) -> None:
+    """Wait for what a relay's trip does, and kill the gateway."""
+    found["capabilities"] = _capabilities(gateways.status()[0].process_id)
+    wait_until(lambda: _alarms(repository), "the alarm of the trip")
+    wait_until(lambda: _requests(repository), "the request that the trip triggers")
+    (alarm,) = _alarms(repository)
+    found["alarm"] = [alarm.motor, alarm.priority.value, alarm.reason.split(" since ")[0]]
+    found["requests"] = [(one.motor, one.origin.value) for one in _requests(repository)]
+    _kill(gateways)
+    found["raises after the kill"] = [one.raises for one in _alarms(repository)]
+    found["requests after the kill"] = len(_requests(repository))
 
 
 def _lie(sender: RawSocket, repository: Repository, found: dict[str, object]) -> None:
