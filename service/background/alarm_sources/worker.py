@@ -15,6 +15,7 @@ from service.background.alarm_sources.clocks import ClockSource
 from service.background.alarm_sources.disks import DiskSource
 from service.background.alarm_sources.links import LinkSource
 from service.background.alarm_sources.missing_data import MissingDataSource
+from service.background.alarm_sources.trips import TripSource
 from service.configuration.settings import Settings
 from service.storage import Repository
 from service.storage.records.alarm_sources import AlarmFinding
@@ -28,7 +29,7 @@ SLOW_PERIOD_S = 60.0
 
 
 class AlarmSources:
-    """Looks at links, clocks, records, disks, certificates and back-ups, and gathers floods.
+    """Looks at links, clocks, records, disks, trips, certificates and back-ups, and gathers floods.
 
     What follows from ages waits while the wall clock of this host was set a short while ago.
     """
@@ -51,6 +52,7 @@ class AlarmSources:
         self._disks = DiskSource(settings.alarms, repository, directories)
         self._certificates = CertificateSource(settings, repository)
         self._backups = BackupSource(settings.backup, repository, started_ns)
+        self._trips = TripSource(repository)
         self._wall_clock = WallClock()
         self._slow_period_s = slow_period_s
         self._next_slow_s: float | None = None
@@ -68,6 +70,7 @@ class AlarmSources:
     def _slow_findings(self, now_ns: int, now_s: float) -> Iterator[AlarmFinding]:
         yield from self._clocks.findings()
         yield from self._disks.findings(now_s)
+        yield from self._trips.findings()
         if not self._wall_clock.was_set:
             yield from self._records.findings(now_ns)
             yield from self._certificates.findings(now_ns)

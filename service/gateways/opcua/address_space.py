@@ -5,13 +5,13 @@ from typing import Final
 
 from asyncua import Node, Server, ua
 
-from service.gateways.opcua.item_state import ItemState, state_values
 from service.gateways.opcua.values import (
     HISTORIES,
     INITIAL,
     MOTOR_VARIABLES,
     MotorVariable,
     health_value,
+    item_state_values,
     motor_value,
     relay_value,
 )
@@ -71,15 +71,10 @@ class PlantNodes:
             if f"motor/{motor.name}" not in self._devices:
                 await self._add_motor(motor)
             await self._write_motor(motor)
-            await self._write_item_state(motor, change.now.relays.get(motor.relay))
         for relay in change.relays:
             if f"relay/{relay.name}" not in self._devices:
                 await self._add_relay(relay)
             await self._write_relay(relay)
-        changed = {relay.name for relay in change.relays}
-        for motor in change.now.motors.values():
-            if motor.relay in changed:
-                await self._write_item_state(motor, change.now.relays[motor.relay])
 
     def motor_node(self, motor: str) -> ua.NodeId:
         """Return the node of a motor, known or not."""
@@ -119,13 +114,8 @@ class PlantNodes:
         await state.add_property(
             ua.NodeId(f"{path}/MachineryItemState/CurrentState/Id", self._ours),
             ua.QualifiedName("Id", 0),
-            ua.Variant(ua.NodeId(int(ItemState.NOT_AVAILABLE), self._machinery), ua.VariantType.NodeId),
+            ua.Variant(ua.NodeId(), ua.VariantType.NodeId),
         )
-
-    async def _write_item_state(self, motor: MotorFigures, relay: RelayFigures | None) -> None:
-        path = f"motor/{motor.name}/MachineryItemState/CurrentState"
-        state, node = state_values(motor, relay, self._machinery)
-        await self._write({path: state, f"{path}/Id": node})
 
     async def _add_variable(self, motor: str, parent: Node, variable: MotorVariable) -> None:
         node_id = ua.NodeId(f"motor/{motor}/{variable.name}", self._ours)
@@ -153,6 +143,9 @@ class PlantNodes:
         path = f"motor/{motor.name}"
         values = {f"{path}/{variable.name}": motor_value(variable, motor) for variable in MOTOR_VARIABLES}
         values[f"{path}/DeviceHealth"] = health_value(motor.device_health, motor.quality, motor.as_of_ns)
+        state, node = item_state_values(motor, self._machinery)
+        current = f"{path}/MachineryItemState/CurrentState"
+        values |= {current: state, f"{current}/Id": node}
         await self._write(values)
 
     async def _add_relay(self, relay: RelayFigures) -> None:

@@ -9,6 +9,7 @@ from asyncua import ua
 from service.gateways.opcua.history import EPOCH, utc
 from service.gateways.plant_state.device_health import DeviceHealth
 from service.gateways.plant_state.figures import MotorFigures, Quality, RelayFigures
+from service.gateways.plant_state.running_state import RunningState
 from service.storage.records import Quantity
 from service.storage.states import AlarmPriority
 
@@ -20,6 +21,13 @@ HEALTHS: Final[Mapping[DeviceHealth, int]] = {
     DeviceHealth.MAINTENANCE_REQUIRED: 4,
 }
 """DeviceHealthEnumeration of OPC 10000-100."""
+
+ITEM_STATES: Final[Mapping[RunningState, tuple[str, int]]] = {
+    RunningState.UNKNOWN: ("NotAvailable", 5005),
+    RunningState.RUNNING: ("Executing", 5006),
+    RunningState.STANDING: ("NotExecuting", 5007),
+}
+"""Names and nodes of the states of MachineryItemState (OPC 40001-1)."""
 
 STATUS: Final[Mapping[Quality, int]] = {
     Quality.GOOD: ua.StatusCodes.Good,
@@ -115,13 +123,23 @@ def motor_value(variable: MotorVariable, motor: MotorFigures) -> ua.DataValue:
 
 
 def health_value(health: DeviceHealth, quality: Quality, time_ns: int | None) -> ua.DataValue:
-    """Return the health of a device. It is told also where the motor's figures are not: that is its point."""
+    """Return the health of a device."""
+    return _told_always(ua.Variant(HEALTHS[health], ua.VariantType.Int32), quality, time_ns)
+
+
+def item_state_values(motor: MotorFigures, namespace: int) -> tuple[ua.DataValue, ua.DataValue]:
+    """Return CurrentState and its Id. namespace: index of that of OPC UA for Machinery."""
+    name, node = ITEM_STATES[motor.running]
+    text = ua.Variant(ua.LocalizedText(name, "en"), ua.VariantType.LocalizedText)
+    place = ua.Variant(ua.NodeId(node, namespace), ua.VariantType.NodeId)
+    state, of_node = (_told_always(one, motor.quality, motor.running_ns) for one in (text, place))
+    return state, of_node
+
+
+def _told_always(value: ua.Variant, quality: Quality, time_ns: int | None) -> ua.DataValue:
+    """Return a value that is told also where the motor's figures are not, as that is its point."""
     status = ua.StatusCodes.Good if quality is Quality.BAD else STATUS[quality]
-    return ua.DataValue(
-        ua.Variant(HEALTHS[health], ua.VariantType.Int32),
-        StatusCode=ua.StatusCode(status),
-        SourceTimestamp=_time(time_ns),
-    )
+    return ua.DataValue(value, StatusCode=ua.StatusCode(status), SourceTimestamp=_time(time_ns))
 
 
 def relay_value(text: str, relay: RelayFigures) -> ua.DataValue:

@@ -9,6 +9,7 @@ from core.condition.assessment import Phase
 from core.condition.kinds import Kind, State
 from core.rotor.finding import RotorState
 from service.gateways.plant_state.device_health import DeviceHealth
+from service.gateways.plant_state.running_state import RunningState
 from service.storage.records import Alarm
 from service.storage.states import AlarmPriority, LinkState
 
@@ -30,7 +31,7 @@ class MotorFigures:
     has them.  rotor: what its standing alarm says.  device_health: the worst of all that.
     since_ns: when the state began.  as_of_ns: time of the latest record in it, and of all values.
     voltage_unbalance, current_unbalance: negative over positive sequence, of the latest record that has them,
-    at unbalance_ns.  stood_ns: when the motor was last seen to stand; None where it never was.
+    at unbalance_ns.  running_ns: when it was seen to run or stand, or its link ended.
     alarms: how many call for somebody; priority: of the most urgent one.
     quality, quality_reason: of all figures; the reason is None where it is good.
     """
@@ -59,10 +60,11 @@ class MotorFigures:
     priority: AlarmPriority | None
     quality: Quality
     quality_reason: str | None
-    voltage_unbalance: float | None = None
-    current_unbalance: float | None = None
-    unbalance_ns: int | None = None
-    stood_ns: int | None = None
+    voltage_unbalance: float | None
+    current_unbalance: float | None
+    unbalance_ns: int | None
+    running: RunningState
+    running_ns: int | None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -7,6 +7,7 @@ from core.condition.verdict.advice import advice
 from service.condition.staleness import is_stale, stale_after_ns
 from service.gateways.plant_state.device_health import health_of_motor, health_of_relay
 from service.gateways.plant_state.figures import MotorFigures, PlantState, Quality, RelayFigures
+from service.gateways.plant_state.running_state import RunningState, running_state
 from service.storage.records import Cursor, FleetMotor, IedEntry, Page, UnbalanceEntry
 from service.storage.repository import Repository
 
@@ -52,6 +53,8 @@ def _motor(
     stale = is_stale(condition, now_ns, stale_after_ns(one.motor.schedule, stale_after_days))
     rotor = None if one.rotor is None else one.rotor.state
     quality, reason = _quality(one, stale=stale)
+    running = running_state(one.link, condition.as_of_ns, condition.stood_ns)
+    seen_ns = max(condition.as_of_ns or 0, condition.stood_ns or 0)
     return MotorFigures(
         name=one.motor.name,
         description=one.motor.description,
@@ -79,8 +82,9 @@ def _motor(
         quality_reason=reason,
         voltage_unbalance=None if unbalance is None else unbalance.voltage_unbalance_iec,
         current_unbalance=None if unbalance is None else unbalance.current_unbalance,
-        stood_ns=condition.stood_ns,
         unbalance_ns=None if unbalance is None else unbalance.time_ns,
+        running=running,
+        running_ns=one.link_changed_ns if running is RunningState.UNKNOWN else seen_ns,
     )
 
 

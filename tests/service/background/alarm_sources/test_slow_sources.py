@@ -19,6 +19,7 @@ from service.background.alarm_sources.certificates import CertificateSource
 from service.background.alarm_sources.clocks import ClockSource
 from service.background.alarm_sources.disks import DiskSource, Room, days_to_full
 from service.background.alarm_sources.missing_data import MissingDataSource
+from service.background.alarm_sources.trips import TripSource
 from service.configuration.alarms import AlarmSettings
 from service.configuration.backup import BackupSettings
 from service.configuration.certificate_files import certificate_files
@@ -27,7 +28,7 @@ from service.configuration.settings import Settings
 from service.plant import Schedule
 from service.storage import Repository
 from service.storage.models import ConditionRow
-from service.storage.records import SERVICE, Alarm, ClockNote, ClockReading
+from service.storage.records import SERVICE, Alarm, AlarmPlace, AlarmSpec, ClockNote, ClockReading
 from service.storage.records.alarm_sources import AlarmFinding
 from service.storage.states import AlarmState, ClockQuality, LinkState
 from testing.relays.certificates import identity
@@ -228,3 +229,14 @@ def test_a_back_up_is_overdue_only_where_one_is_expected(table: Table, tmp_path:
     (alarm,) = table.settle(source().findings(NOW_NS + 6 * DAY_NS))
     assert alarm.reason == f"the latest verified back-up is of 2025-10-12T08:53:20Z ({tmp_path})"
     assert table.settle(source(expected=False).findings(NOW_NS + 6 * DAY_NS)) == []
+
+
+def test_a_trip_is_over_when_its_motor_leaves_the_plant(table: Table) -> None:
+    source, plant = TripSource(table.repository), two_motor_plant()
+    spec = AlarmSpec(AlarmKind.MOTOR_TRIPPED, "PTRC1.Tr is on", "PTRC1.Tr")
+    for motor in plant.motors:
+        table.repository.raise_alarm_at(AlarmPlace(motor=motor.name), spec, now_ns=NOW_NS)
+    assert len(table.settle(source.findings())) == 2
+    table.repository.sync_plant(replace(plant, motors=plant.motors[1:]))
+    (alarm,) = table.settle(source.findings())
+    assert alarm.motor == plant.motors[1].name

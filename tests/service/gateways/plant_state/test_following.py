@@ -14,6 +14,7 @@ from service.gateways.plant_state.device_health import DeviceHealth, health_of_m
 from service.gateways.plant_state.figures import PlantChange, Quality
 from service.gateways.plant_state.following import PlantFollower
 from service.gateways.plant_state.reading import NOT_JUDGED, read_plant_state
+from service.gateways.plant_state.running_state import RunningState, running_state
 from service.storage import Repository
 from service.storage.states import LinkState
 from testing.service.conditions import FAULT, HEALTHY, tell
@@ -58,7 +59,11 @@ def test_only_what_differs_is_told_again(repository: Repository, follower: Plant
     change = next_change(follower)
     assert [relay.name for relay in change.relays] == ["A2_SEL710"]
     assert change.relays[0].device_health is DeviceHealth.FAILURE
-    assert change.motors == ()
+    # With the link goes what is known of its motor running.
+    assert [(motor.name, motor.running, motor.running_ns) for motor in change.motors] == [
+        ("FAN-A2", RunningState.UNKNOWN, NOW_NS)
+    ]
+    assert follower.next_change(Event(), longest_s=0.1) is None
     tell(repository, FAULT)
     (motor,) = next_change(follower).motors
     assert (motor.name, motor.state) == ("PUMP-A1", State.FAULT)
@@ -141,3 +146,20 @@ def test_a_clock_that_jumps_makes_values_old_and_good_again_and_stops_nothing(
         assert follower.problem is None
     finally:
         follower.close()
+
+
+@pytest.mark.parametrize(
+    ("link", "as_of_ns", "stood_ns", "expected"),
+    [
+        (LinkState.UP, 20, 10, RunningState.RUNNING),
+        (LinkState.UP, 10, 20, RunningState.STANDING),
+        (LinkState.UP, None, 20, RunningState.STANDING),
+        (LinkState.UP, None, None, RunningState.UNKNOWN),
+        (LinkState.DOWN, 20, 10, RunningState.UNKNOWN),
+        (LinkState.UNKNOWN, 10, 20, RunningState.UNKNOWN),
+    ],
+)
+def test_a_motor_runs_as_it_was_seen_last(
+    link: LinkState, as_of_ns: int | None, stood_ns: int | None, expected: RunningState
+) -> None:
+    assert running_state(link, as_of_ns, stood_ns) is expected
