@@ -16,7 +16,7 @@ from ied_sim.relay.plant_clock import REAL_TIME, ClockSettings, PlantClock
 from ied_sim.relay.relay import Relay
 from ied_sim.scenario.scenario import healthy_reference
 from mms import ModelError, ServerPump, ServerStartFailed
-from mms.goose import PublisherThread, RawSocket
+from mms.goose import PublisherThread, RawSocket, RawSocketError
 from scl import Address, Scl, SclError
 from scl.ied_model import Ied
 
@@ -56,8 +56,6 @@ class Simulator:
         The file lacks an IED of `ieds`.
     OSError
         The relays' directories cannot be made.
-    RawSocketError
-        The interface for GOOSE does not exist, or the capability CAP_NET_RAW is missing.
     """
 
     def __init__(
@@ -75,12 +73,8 @@ class Simulator:
         self._clock = PlantClock(time.time_ns(), clock)
         self._start_s = time.monotonic()
         self._proxies = RelayProxies()
-        self._goose_socket = None if goose_interface is None else RawSocket(goose_interface)
-        self._goose_outlet = (
-            None
-            if self._goose_socket is None
-            else GooseOutlet(PublisherThread(self._goose_socket.send), self._goose_socket.address)
-        )
+        self._goose_interface = goose_interface
+        self._goose: tuple[RawSocket, PublisherThread] | None = None
         self.relays: dict[str, Relay] = {}
         self.addresses: dict[str, Address] = {}
         self.left_out: dict[str, str] = {}
@@ -101,7 +95,10 @@ class Simulator:
         return self._clock.epoch_ns
 
     def start(self) -> None:
-        """Serve. SimulatorError names the relay whose address and port cannot be had."""
+        """Serve. SimulatorError names the relay whose address and port cannot be had.
+
+        RawSocketError: there is no such interface for GOOSE, or the capability CAP_NET_RAW is missing.
+        """
         try:
             self._pump.start()
             for relay in self.relays.values():
@@ -114,8 +111,8 @@ class Simulator:
             self.stop()
             raise self._start_error(str(taken))
         self._updating.start()
-        if self._goose_outlet is not None:
-            self._goose_outlet.thread.start()
+        if self._goose_interface is not None:
+            self._publish_goose(self._goose_interface)
 
     def stop(self) -> None:
         """Close all connections and abandon captures under way."""
@@ -128,9 +125,10 @@ class Simulator:
             if relay.serves_itself:
                 relay.server.stop()
         self._pump.stop()
-        if self._goose_socket is not None and self._goose_outlet is not None:
-            self._goose_outlet.thread.stop()
-            self._goose_socket.close()
+        if self._goose is not None:
+            socket, thread = self._goose
+            thread.stop()
+            socket.close()
 
     def __enter__(self) -> Self:
         self.start()
@@ -164,13 +162,25 @@ class Simulator:
                 files=self._files,
                 clock=self._clock,
                 proxies=self._proxies,
-                goose_outlet=self._goose_outlet,
             )
         except (SclError, ModelError) as error:
             self._proxies.remove(address)
             self._leave_out(ied, str(error))
             return
         self.addresses[ied.name] = address
+
+    def _publish_goose(self, interface: str) -> None:
+        try:
+            socket = RawSocket(interface)
+        except RawSocketError:
+            self.stop()
+            raise
+        thread = PublisherThread(socket.send)
+        self._goose = socket, thread
+        outlet = GooseOutlet(thread, socket.address)
+        for relay in self.relays.values():
+            relay.publish_goose(outlet)
+        thread.start()
 
     def _leave_out(self, ied: Ied, reason: str) -> None:
         self.left_out[ied.name] = reason

@@ -11,7 +11,7 @@ from lxml import etree
 from scl import DEMO_PLANT_SCD, SEL710_ICD
 from scl.configuration import Address
 from scl.document import Document
-from scl.instantiation import rename_ied, set_address, write
+from scl.instantiation import number_goose, rename_ied, set_address, write
 
 HOST = "127.0.0.1"
 FIRST_PORT = 10210
@@ -85,7 +85,7 @@ def write_demo_plant(path: Path | str) -> None:
             network, "SubNetwork", name=site, type="8-MMS", desc=f"Motor control, {description}"
         )
         for drive in drives:
-            connected, relay = _relay(drive, Address(HOST, port))
+            connected, relay = _relay(drive, Address(HOST, port), port - FIRST_PORT)
             subnetwork.append(connected)
             plant.root.append(relay)
             port += 1
@@ -114,11 +114,12 @@ def _substation(plant: Document, name: str, description: str, drives: tuple[Driv
     return substation
 
 
-def _relay(drive: Drive, address: Address) -> tuple[etree._Element, etree._Element]:
+def _relay(drive: Drive, address: Address, number: int) -> tuple[etree._Element, etree._Element]:
     """Make the ConnectedAP and the IED of a drive's relay from the ICD."""
     relay = Document(SEL710_ICD)
     rename_ied(relay, drive.ied)
     set_address(relay, drive.ied, address)
+    number_goose(relay, number)
     connected = next(relay.descendants(relay.root, "ConnectedAP"))
     ied = next(relay.children(relay.root, "IED"))
     ied.set("desc", f"Motor protection relay of {drive.motor}")

@@ -17,10 +17,13 @@ class GooseMember:
         The member.
     data : DataObject or DataAttribute or None
         What it names; None where the IED has no such data.
+    ln_class : str or None
+        Class of its logical node, "PTRC"; None where the IED has no such node.
     """
 
     member: DataSetMember
     data: DataObject | DataAttribute | None
+    ln_class: str | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,8 +73,13 @@ def goose_blocks(ied: Ied) -> tuple[GooseBlock, ...]:
                 data_set = data_sets.get(control.data_set or "")
                 if data_set is not None:
                     place = f"{device.name}/{node.name}"
-                    members = tuple(GooseMember(one, ied.resolve(one)) for one in data_set.members)
+                    members = tuple(_member(ied, one) for one in data_set.members)
                     found.append(
                         GooseBlock(f"{place}$GO${control.name}", f"{place}${data_set.name}", control, members)
                     )
     return tuple(found)
+
+
+def _member(ied: Ied, member: DataSetMember) -> GooseMember:
+    node = ied.node_of(member)
+    return GooseMember(member, ied.resolve(member), None if node is None else node.ln_class)

@@ -10,6 +10,10 @@ from scl.configuration import Address
 from scl.document import IED_NAME, Document
 from scl.errors import SclError
 from scl.reader import read
+from scl.xml_file import content
+
+GOOSE_ADDRESSES = 512
+"""Multicast addresses 01-0C-CD-01-00-00 to 01-0C-CD-01-01-FF (IEC 61850-8-1 annex B)."""
 
 
 def instantiate(
@@ -98,6 +102,9 @@ def rename_ied(document: Document, name: str) -> None:
     for element in document.root.iter(etree.Element):
         if element.get("iedName") == old_name:
             element.set("iedName", name)
+    for control in document.descendants(document.root, "GSEControl"):
+        if control.get("appID") == old_name:
+            control.set("appID", name)
 
 
 def set_address(document: Document, ied_name: str, address: Address, access_point: str | None = None) -> None:
@@ -130,6 +137,39 @@ def set_address(document: Document, ied_name: str, address: Address, access_poin
     for element in found:
         _set_parameter(document, element, "IP", address.host)
         _set_parameter(document, element, "MMS-Port", str(address.port))
+
+
+def number_goose(document: Document, number: int) -> None:
+    """Give the GOOSE control blocks of a document addresses by the number of their relay.
+
+    Each block has the multicast address and APPID that the file gives it, plus the number. A file whose
+    relays have one block each so gets addresses of its own for every relay.
+
+    Parameters
+    ----------
+    document : Document
+        The document, which is changed.
+    number : int
+        Number of the relay, from 0 to 511: GOOSE has so many multicast addresses.
+
+    Raises
+    ------
+    SclError
+        The number is not in that range.
+    """
+    if not 0 <= number < GOOSE_ADDRESSES:
+        raise SclError(
+            document.path, expected=f"a relay's number from 0 to {GOOSE_ADDRESSES - 1}", found=str(number)
+        )
+    for block in document.descendants(document.root, "GSE"):
+        for section in document.children(block, "Address"):
+            for parameter in document.children(section, "P"):
+                text = content(parameter)
+                if parameter.get("type") == "MAC-Address":
+                    octets = int(text.replace("-", ""), 16) + number
+                    parameter.text = octets.to_bytes(6).hex("-").upper()
+                elif parameter.get("type") == "APPID":
+                    parameter.text = f"{int(text, 16) + number:04X}"
 
 
 def write(document: Document, path: Path) -> None:

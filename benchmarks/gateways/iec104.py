@@ -1,6 +1,5 @@
 """python -m benchmarks.gateways.iec104: IEC 60870-5-104 with 500 motors, told to a controlling station."""
 
-import argparse
 import time
 from contextlib import closing
 from pathlib import Path
@@ -8,7 +7,7 @@ from tempfile import TemporaryDirectory
 
 import c104
 
-from benchmarks.gateways.load import measure
+from benchmarks.gateways.load import argument_parser, measure
 from benchmarks.gateways.plant import changing_plant
 from service.configuration.gateways.iec104 import Iec104Settings
 from service.configuration.gateways.settings import GatewaysSettings
@@ -47,11 +46,7 @@ class Controlling:
 
 def main() -> None:
     """Print the figures."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--motors", type=int, default=500)
-    parser.add_argument("--changes", type=int, default=60)
-    parser.add_argument("--idle-s", type=float, default=60.0)
-    wanted = parser.parse_args()
+    wanted = argument_parser(__doc__).parse_args()
     with TemporaryDirectory(prefix="statorwatch-") as directory:
         plant = changing_plant(Path(directory), wanted.motors, now_ns=time.time_ns())
         server = Iec104Settings(port=free_port())

@@ -1,6 +1,5 @@
 """python -m benchmarks.gateways.iec61850: the IEC 61850 server with 500 motors, read by a client."""
 
-import argparse
 import time
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -8,7 +7,7 @@ from tempfile import TemporaryDirectory
 from open61850 import data as open_data
 from open61850 import mms as open_mms
 
-from benchmarks.gateways.load import measure
+from benchmarks.gateways.load import argument_parser, measure
 from benchmarks.gateways.plant import changing_plant
 from service.configuration.gateways.iec61850 import Iec61850Settings
 from service.configuration.gateways.settings import GatewaysSettings
@@ -21,11 +20,7 @@ from testing.waiting import wait_until
 
 def main() -> None:
     """Print the figures. The client is open61850's, which does not stand on the server's library."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--motors", type=int, default=500)
-    parser.add_argument("--changes", type=int, default=60)
-    parser.add_argument("--idle-s", type=float, default=60.0)
-    wanted = parser.parse_args()
+    wanted = argument_parser(__doc__).parse_args()
     with TemporaryDirectory(prefix="statorwatch-") as directory:
         plant = changing_plant(Path(directory), wanted.motors, now_ns=time.time_ns())
         port = free_port()

@@ -1,5 +1,6 @@
 """Processor time and memory of a gateway, and how long a change takes until the other side has it."""
 
+import argparse
 import os
 import time
 from collections.abc import Callable, Sequence
@@ -8,6 +9,15 @@ from pathlib import Path
 from typing import Protocol
 
 TICKS_PER_S = os.sysconf("SC_CLK_TCK")
+
+
+def argument_parser(description: str | None) -> argparse.ArgumentParser:
+    """Return a parser of what every gateway's benchmark is asked."""
+    parser = argparse.ArgumentParser(description=description)
+    parser.add_argument("--motors", type=int, default=500)
+    parser.add_argument("--changes", type=int, default=60)
+    parser.add_argument("--idle-s", type=float, default=60.0)
+    return parser
 
 
 class Changeable(Protocol):

@@ -1,13 +1,12 @@
 """python -m benchmarks.gateways.modbus: the Modbus server with 500 motors, read by libmodbus (mbpoll)."""
 
-import argparse
 import re
 import subprocess
 import time
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from benchmarks.gateways.load import measure
+from benchmarks.gateways.load import argument_parser, measure
 from benchmarks.gateways.plant import changing_plant
 from service.configuration.gateways.modbus import ModbusSettings
 from service.configuration.gateways.settings import GatewaysSettings
@@ -20,11 +19,7 @@ from testing.waiting import wait_until
 
 def main() -> None:
     """Print the figures."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--motors", type=int, default=500)
-    parser.add_argument("--changes", type=int, default=60)
-    parser.add_argument("--idle-s", type=float, default=60.0)
-    wanted = parser.parse_args()
+    wanted = argument_parser(__doc__).parse_args()
     with TemporaryDirectory(prefix="statorwatch-") as directory:
         plant = changing_plant(Path(directory), wanted.motors, now_ns=time.time_ns())
         port = free_port()

@@ -1,12 +1,11 @@
 """python -m benchmarks.gateways.mqtt: topics and Sparkplug with 500 motors, heard by mosquitto_sub."""
 
-import argparse
 import json
 import time
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from benchmarks.gateways.load import measure
+from benchmarks.gateways.load import argument_parser, measure
 from benchmarks.gateways.plant import changing_plant
 from service.configuration.gateways.mqtt import MqttSettings, SparkplugSettings
 from service.configuration.gateways.settings import GatewaysSettings
@@ -18,10 +17,7 @@ from testing.waiting import wait_until
 
 def main() -> None:
     """Print the figures."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--motors", type=int, default=500)
-    parser.add_argument("--changes", type=int, default=60)
-    parser.add_argument("--idle-s", type=float, default=60.0)
+    parser = argument_parser(__doc__)
     parser.add_argument("--without-sparkplug", action="store_true")
     wanted = parser.parse_args()
     with TemporaryDirectory(prefix="statorwatch-") as name, running_mosquitto(Path(name)) as broker:

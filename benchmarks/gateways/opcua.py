@@ -1,6 +1,5 @@
 """python -m benchmarks.gateways.opcua: the OPC UA server with 500 motors, and a client subscribed to all."""
 
-import argparse
 import asyncio
 import time
 from pathlib import Path
@@ -10,7 +9,7 @@ from typing import Any
 
 from asyncua import Client
 
-from benchmarks.gateways.load import measure
+from benchmarks.gateways.load import argument_parser, measure
 from benchmarks.gateways.plant import changing_plant
 from service.configuration.gateways.opcua import OpcUaSettings
 from service.configuration.gateways.settings import GatewaysSettings
@@ -49,11 +48,7 @@ class Subscribed:
 
 def main() -> None:
     """Print the figures."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--motors", type=int, default=500)
-    parser.add_argument("--changes", type=int, default=60)
-    parser.add_argument("--idle-s", type=float, default=60.0)
-    wanted = parser.parse_args()
+    wanted = argument_parser(__doc__).parse_args()
     with TemporaryDirectory(prefix="statorwatch-") as directory:
         plant = changing_plant(Path(directory), wanted.motors, now_ns=time.time_ns())
         server = OpcUaSettings(port=free_port(), anonymous=True, unencrypted=True)

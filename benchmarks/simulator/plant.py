@@ -18,7 +18,7 @@ from ied_sim.scenario.scenario import healthy_reference
 from mms import Client
 from scl import SEL710_ICD, Address, read
 from scl.document import Document
-from scl.instantiation import rename_ied, set_address, write
+from scl.instantiation import GOOSE_ADDRESSES, number_goose, rename_ied, set_address, write
 from service.demo.addresses import free_ports
 
 HOST = "127.0.0.1"
@@ -52,6 +52,7 @@ def plant_of(ports: Sequence[int], path: Path, *, first: int = 1) -> None:
         name = f"R{number:03d}"
         rename_ied(relay, name)
         set_address(relay, name, Address(HOST, port))
+        number_goose(relay, number % GOOSE_ADDRESSES)
         subnetwork.append(next(relay.descendants(relay.root, "ConnectedAP")))
         plant.root.append(next(relay.children(relay.root, "IED")))
     plant.root.append(types)

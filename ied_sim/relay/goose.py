@@ -1,24 +1,21 @@
 """GOOSE messages of a simulated relay: the data sets of its control blocks, told at each change.
 
-An event such as a trip is a change of a value in a data set. A new quality or time alone is none.
+An event such as a trip is a change of a value or a quality in a data set. A new time alone is none.
 """
 
 import logging
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from functools import partial
 
 from mms import BitString, Quality, Timestamp, Value
 from mms.goose import PublishedBlock, Publisher, PublisherThread
 from scl.data_model import DataAttribute, DataObject
-from scl.goose_blocks import GooseBlock, goose_blocks
+from scl.goose_blocks import GooseBlock, GooseMember, goose_blocks
 from scl.ied_model import Ied
 
 log = logging.getLogger(__name__)
 
 Held = Value | Quality
-_Reader = Callable[[Mapping[str, Held], bool], Value]
-"""Gives the value of a member, from those of the relay by reference; with or without quality and time."""
 
 _ZEROS: Mapping[str, Value] = {
     "BOOLEAN": False,
@@ -44,8 +41,29 @@ class UnsupportedDataError(Exception):
     """A data set has data that the simulator does not send."""
 
 
+@dataclass(frozen=True, slots=True)
+class _Leaf:
+    """A value of a data set: its reference, and what it is where the relay has published nothing yet."""
+
+    reference: str
+    zero: Value
+
+
+_Layout = _Leaf | tuple["_Layout", ...]
+"""How the values of a data set are nested."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Sent:
+    """A control block that is sent. states: references of its values whose change is a new state."""
+
+    publisher: Publisher
+    layout: tuple[_Layout, ...]
+    states: frozenset[str]
+
+
 class RelayGoose:
-    """Publishes the control blocks of one relay that have an address.
+    """Publishes the control blocks of one relay that have an address, from the beginning.
 
     Parameters
     ----------
@@ -53,40 +71,37 @@ class RelayGoose:
         The relay's IED.
     outlet : GooseOutlet
         Where the messages go.
+    values : mapping of str to Value or Quality
+        Values that the relay has published, by reference.
+    time_ns : int
+        Since when they are so [ns, UTC].
     """
 
-    def __init__(self, ied: Ied, outlet: GooseOutlet) -> None:
-        self._outlet = outlet
-        self._values: dict[str, Held] = {}
-        self._blocks: list[tuple[PublishedBlock, Sequence[_Reader]]] = []
-        self._publishers: list[Publisher] = []
-        self._told: list[tuple[Value, ...]] = []
+    def __init__(self, ied: Ied, outlet: GooseOutlet, values: Mapping[str, Held], time_ns: int) -> None:
+        self._thread = outlet.thread
+        self._values: dict[str, Held] = dict(values)
+        self._blocks: list[_Sent] = []
         for block in goose_blocks(ied):
             try:
-                self._blocks.append((_published(block), _readers(block)))
+                published, layout = _published(block), tuple(_of_member(member) for member in block.members)
             except UnsupportedDataError as error:
                 log.warning("%s: not published: %s", block.reference, error)
-
-    def begin(self, time_ns: int) -> None:
-        """Publish the values as they are, from now on."""
-        for block, readers in self._blocks:
-            publisher = Publisher(block, self._outlet.source, self._all(readers), time_ns)
-            self._told.append(self._all(readers, stamped=False))
-            self._publishers.append(publisher)
-            self._outlet.thread.add(publisher)
+                continue
+            leaves = list(_leaves(layout))
+            for leaf in leaves:
+                self._values.setdefault(leaf.reference, leaf.zero)
+            states = frozenset(leaf.reference for leaf in leaves if not isinstance(leaf.zero, Timestamp))
+            publisher = Publisher(published, outlet.source, _filled(layout, self._values), time_ns)
+            self._blocks.append(_Sent(publisher, layout, states))
+            self._thread.add(publisher)
 
     def update(self, changes: Mapping[str, Held], time_ns: int) -> None:
         """Take published values, and tell the data sets that they change. One thread at a time may call."""
+        changed = [reference for reference, value in changes.items() if self._values.get(reference) != value]
         self._values |= changes
-        for place, publisher in enumerate(self._publishers):
-            _, readers = self._blocks[place]
-            values = self._all(readers, stamped=False)
-            if values != self._told[place]:
-                self._told[place] = values
-                self._outlet.thread.change(publisher, self._all(readers), time_ns)
-
-    def _all(self, readers: Sequence[_Reader], *, stamped: bool = True) -> tuple[Value, ...]:
-        return tuple(read(self._values, stamped) for read in readers)
+        for block in self._blocks:
+            if not block.states.isdisjoint(changed):
+                self._thread.change(block.publisher, _filled(block.layout, self._values), time_ns)
 
 
 def _published(block: GooseBlock) -> PublishedBlock:
@@ -114,50 +129,31 @@ def _published(block: GooseBlock) -> PublishedBlock:
     )
 
 
-def _readers(block: GooseBlock) -> Sequence[_Reader]:
-    found = []
-    for member in block.members:
-        data, reference = member.data, member.member.reference
-        if data is None:
-            raise UnsupportedDataError(f"{reference}: the relay has no such data")
-        if isinstance(data, DataAttribute):
-            found.append(_of_attribute(data, reference))
-        else:
-            found.append(_of_object(data, reference, member.member.fc))
-    return found
+def _of_member(member: GooseMember) -> _Layout:
+    data, reference = member.data, member.member.reference
+    if data is None:
+        raise UnsupportedDataError(f"{reference}: the relay has no such data")
+    if isinstance(data, DataAttribute):
+        return _of_attribute(data, reference)
+    return _of_object(data, reference, member.member.fc)
 
 
-def _of_object(data: DataObject, reference: str, constraint: str) -> _Reader:
+def _of_object(data: DataObject, reference: str, constraint: str) -> _Layout:
     if data.objects or data.count:
         raise UnsupportedDataError(f"{reference}: expected data without sub-objects and arrays")
-    return partial(
-        _structure,
-        tuple(
-            _of_attribute(attribute, f"{reference}.{attribute.name}")
-            for attribute in data.attributes
-            if attribute.fc == constraint
-        ),
+    return tuple(
+        _of_attribute(attribute, f"{reference}.{attribute.name}")
+        for attribute in data.attributes
+        if attribute.fc == constraint
     )
 
 
-def _of_attribute(attribute: DataAttribute, reference: str) -> _Reader:
+def _of_attribute(attribute: DataAttribute, reference: str) -> _Layout:
     if attribute.count:
         raise UnsupportedDataError(f"{reference}: expected data without arrays")
     if attribute.basic_type == "Struct":
-        parts = (_of_attribute(part, f"{reference}.{part.name}") for part in attribute.attributes)
-        return partial(_structure, tuple(parts))
-    return partial(_leaf, reference, _zero(attribute), attribute.basic_type in ("Quality", "Timestamp"))
-
-
-def _structure(parts: Sequence[_Reader], values: Mapping[str, Held], stamped: bool) -> Value:
-    return tuple(part(values, stamped) for part in parts)
-
-
-def _leaf(reference: str, zero: Value, is_stamp: bool, values: Mapping[str, Held], stamped: bool) -> Value:
-    if is_stamp and not stamped:
-        return zero
-    held = values.get(reference, zero)
-    return held.bits if isinstance(held, Quality) else held
+        return tuple(_of_attribute(part, f"{reference}.{part.name}") for part in attribute.attributes)
+    return _Leaf(reference, _zero(attribute))
 
 
 def _zero(attribute: DataAttribute) -> Value:
@@ -166,3 +162,21 @@ def _zero(attribute: DataAttribute) -> Value:
     if attribute.basic_type.startswith("Octet"):
         return b""
     return _ZEROS.get(attribute.basic_type, attribute.ordinal or 0)
+
+
+def _leaves(layout: tuple[_Layout, ...]) -> Iterator[_Leaf]:
+    for part in layout:
+        if isinstance(part, _Leaf):
+            yield part
+        else:
+            yield from _leaves(part)
+
+
+def _filled(layout: tuple[_Layout, ...], values: Mapping[str, Held]) -> tuple[Value, ...]:
+    return tuple(
+        _bits(values[part.reference]) if isinstance(part, _Leaf) else _filled(part, values) for part in layout
+    )
+
+
+def _bits(held: Held) -> Value:
+    return held.bits if isinstance(held, Quality) else held

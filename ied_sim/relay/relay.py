@@ -20,7 +20,7 @@ from ied_sim.relay.configuration import RelayConfiguration
 from ied_sim.relay.controls import RelayControls
 from ied_sim.relay.event_files import EventFiles
 from ied_sim.relay.event_recorder import Capture, EventRecorder
-from ied_sim.relay.goose import GooseOutlet, RelayGoose
+from ied_sim.relay.goose import GooseOutlet
 from ied_sim.relay.listening import listening_address
 from ied_sim.relay.misbehaviour import RelayMisbehaviour
 from ied_sim.relay.plant_clock import PlantClock
@@ -70,8 +70,6 @@ class Relay:
         The plant's clock.
     proxies : RelayProxies, optional
         Where it gets a proxy if it needs one.
-    goose_outlet : GooseOutlet, optional
-        Where its GOOSE messages go. It sends none without.
 
     Raises
     ------
@@ -91,14 +89,13 @@ class Relay:
         files: Path,
         clock: PlantClock,
         proxies: RelayProxies | None = None,
-        goose_outlet: GooseOutlet | None = None,
     ) -> None:
         profile = configuration.profile
         self.name = ied_name
         self._configuration = configuration
         self._epoch_ns = clock.epoch_ns
         self._rated_A = rated_current(configuration.plant.motor)
-        ied = document.ied(ied_name)
+        self._ied = ied = document.ied(ied_name)
         self._points = RelayPoints(ied, profile)
         if self._points.departures is not None:
             log.warning("%s: %s", ied_name, self._points.departures)
@@ -150,7 +147,6 @@ class Relay:
         self._recorder = EventRecorder(
             ied_name, configuration.plant, configuration.recorder, clock=clock, store=self._store
         )
-        goose = None if goose_outlet is None else RelayGoose(ied, goose_outlet)
         self._relay_server = RelayServer(
             ied_name,
             model_text(document, ied_name),
@@ -174,7 +170,6 @@ class Relay:
             access=configuration.access,
             identity=Identity(ied.manufacturer, ied.type, profile.firmware),
             misbehaviour_state=self.misbehaviour_state,
-            goose=goose,
         )
         self._values = RelayValues(
             self._relay_server,
@@ -190,8 +185,6 @@ class Relay:
         )
         self._publish_initial_values(self._clock.now_ns())
         self._relay_server.apply_published()
-        if goose is not None:
-            goose.begin(self._clock.now_ns())
 
     @property
     def server(self) -> Server:
@@ -205,6 +198,10 @@ class Relay:
         A server that restarts cannot share a pump, and one with TLS handshakes would hold the others up.
         """
         return Kind.RESTART in self.misbehaviour_state.kinds or self._configuration.access.tls is not None
+
+    def publish_goose(self, outlet: GooseOutlet) -> None:
+        """Send the GOOSE messages of the relay's control blocks from now on."""
+        self._relay_server.publish_goose(self._ied, outlet)
 
     def stop(self) -> None:
         """Abandon a capture under way. The server itself belongs to its pump."""

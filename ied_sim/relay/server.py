@@ -10,7 +10,7 @@ from ied_sim.misbehaviour import Kind, MisbehaviourState
 from ied_sim.profiles.profile import Profile
 from ied_sim.relay.clock import RelayClock
 from ied_sim.relay.configuration import Access
-from ied_sim.relay.goose import RelayGoose
+from ied_sim.relay.goose import GooseOutlet, RelayGoose
 from ied_sim.relay.points import RelayPoints
 from ied_sim.relay.report_control import with_optional_fields, without_data_set
 from mms import (
@@ -29,6 +29,7 @@ from mms import (
     Value,
 )
 from scl import Address
+from scl.ied_model import Ied
 
 _ANY_NAME = "RELAY"
 
@@ -64,7 +65,6 @@ class RelayServer:
         access: Access,
         identity: Identity,
         misbehaviour_state: MisbehaviourState,
-        goose: RelayGoose | None,
     ) -> None:
         # All models have the same name: relays of one kind then share one text, which is checked once.
         anonymous = model.replace(f"MODEL({name}){{", f"MODEL({_ANY_NAME}){{", 1)
@@ -82,7 +82,7 @@ class RelayServer:
         self._access = access
         self._identity = identity
         self._misbehaviour_state = misbehaviour_state
-        self._goose = goose
+        self._goose: RelayGoose | None = None
         self._values: dict[str, Value | Quality] = {}
         self._stamps: dict[str, tuple[str | None, str | None]] = {}
         self._switching = threading.Lock()
@@ -119,6 +119,11 @@ class RelayServer:
                 server.post(changes)
             if self._goose is not None:
                 self._goose.update(changes, stamp.ns)
+
+    def publish_goose(self, ied: Ied, outlet: GooseOutlet) -> None:
+        """Send the GOOSE messages of the control blocks from now on. ied: the relay's."""
+        with self._publishing:
+            self._goose = RelayGoose(ied, outlet, self._values, self._clock.now_ns())
 
     def apply_published(self) -> None:
         """Apply to the server what was published. Raises ModelError where it does not fit.

@@ -18,6 +18,7 @@ import structlog
 from pebble import ProcessPool
 
 from service.jobs.workers import Argument, NoWorkersError, Result
+from service.process.capabilities import Capability, give_up
 from service.process.termination import held_back
 from service.timing.backoff import RestartDelay
 
@@ -147,5 +148,7 @@ def _end(pool: ProcessPool) -> None:
 
 def _prepare(prepare_worker: Callable[[], None], prepared: Semaphore) -> None:
     """Prepare a worker, in that worker; tell the pool when it is done."""
+    # It reads what relays send, and needs no socket.
+    give_up([Capability.NET_RAW])
     prepare_worker()
     prepared.release()

@@ -1,8 +1,10 @@
 """The GOOSE gateway: a socket is read on a thread of its own, so that no message waits for the database."""
 
 import time
+from collections.abc import Sequence
 from threading import Condition, Event, Thread
 from typing import Final
+from uuid import uuid4
 
 import structlog
 from sqlalchemy.exc import SQLAlchemyError
@@ -11,11 +13,18 @@ import scl
 from core.time_stamps import rfc3339
 from mms.goose import RawSocket, RawSocketError
 from service.alarms.kinds import AlarmKind
+from service.configuration.gateways.goose import GooseSettings
 from service.configuration.settings import Settings
 from service.gateways.context import GatewayContext
 from service.gateways.goose.listener import GooseListener, SignalChange
-from service.gateways.goose.signals import Meaning, Signal, SignalError, destinations, watched_blocks
-from service.plant import PlantError, read_plant
+from service.gateways.goose.signals import (
+    Meaning,
+    Signal,
+    SignalError,
+    WatchedBlock,
+    destinations,
+    watched_blocks,
+)
 from service.storage import NotFoundError, Repository, StorageError
 from service.storage.records import Actor, AlarmPlace, AlarmSpec
 from service.timing.database_silence import database_trouble
@@ -34,14 +43,55 @@ GOOSE: Final = Actor("goose", "service")
 
 def run(context: GatewayContext) -> None:
     """Listen until the service is gone."""
+    chosen = context.settings.gateways.goose
+    assert chosen is not None  # noqa: S101 - it was started for them
+    blocks = _watched_blocks(context, chosen)
+    listener = GooseListener(blocks, simulated=chosen.simulated)
     writer = SignalWriter(context.repository, context.settings.max_open_requests)
     changes = PendingChanges()
-    while (receiver := _receiver(context, changes)) is not None:
+    while (socket := _socket(context, chosen.interface, blocks)) is not None:
+        log.info("listening to GOOSE", interface=chosen.interface, blocks=len(blocks))
+        receiver = Receiver(socket, listener, changes, context.stop)
         receiver.start()
         try:
             _write_changes(context, receiver, changes, writer)
         finally:
             receiver.stop()
+
+
+def _watched_blocks(context: GatewayContext, chosen: GooseSettings) -> tuple[WatchedBlock, ...]:
+    """Return what is to be heard; nothing where the service is gone before that is known."""
+    while not context.stop.is_set():
+        try:
+            # The service has written the plant before its gateways start.
+            relays = context.repository.relays_of_motors()
+            return watched_blocks(chosen, _document(context.settings), relays)
+        except SQLAlchemyError as error:
+            context.tell(database_trouble(error))
+            context.stop.wait(RETRY_S)
+        except (SignalError, scl.SclError) as error:
+            log.warning("the GOOSE gateway cannot listen", error=str(error))
+            context.tell(str(error))
+            context.stop.wait()  # Starting it again would change nothing.
+    return ()
+
+
+def _document(settings: Settings) -> scl.Scl:
+    """Read the SCD. Raises SignalError, SclError."""
+    if settings.scd is None:
+        raise SignalError("gateways.goose: expected the setting scd, whose GSEControl says what is sent")
+    return scl.read(settings.scd)
+
+
+def _socket(context: GatewayContext, interface: str, blocks: Sequence[WatchedBlock]) -> RawSocket | None:
+    """Return a socket that hears the blocks; None where the service is gone before it can be had."""
+    while not context.stop.is_set():
+        try:
+            return RawSocket(interface, destinations(blocks))
+        except RawSocketError as error:  # An interface may come up later.
+            context.tell(str(error))
+            context.stop.wait(REOPEN_S)
+    return None
 
 
 def _write_changes(
@@ -50,51 +100,35 @@ def _write_changes(
     """Write what is heard until the receiver ends: the service is gone, or the interface is."""
     while receiver.is_listening:
         change = changes.wait_for_next(LOOK_S)
+        key = uuid4().hex
         while change is not None and not context.stop.is_set():
             try:
-                writer.write(change, time.time_ns())
+                writer.write(change, time.time_ns(), key)
                 change = None
             except SQLAlchemyError as error:
-                context.tell(f"the database does not answer: {database_trouble(error)}")
+                context.tell(database_trouble(error))
                 context.stop.wait(RETRY_S)
         context.tell(receiver.problem)
 
 
-def _receiver(context: GatewayContext, changes: "PendingChanges") -> "Receiver | None":
-    """Return what listens; None where the service is gone before it can."""
-    while not context.stop.is_set():
-        try:
-            return Receiver(context.settings, context.stop, changes)
-        except RawSocketError as error:  # An interface may come up later.
-            context.tell(str(error))
-            context.stop.wait(REOPEN_S)
-        except (PlantError, SignalError, scl.SclError) as error:
-            log.warning("the GOOSE gateway cannot listen", error=str(error))
-            context.tell(str(error))
-            context.stop.wait()  # Starting it again would change nothing.
-    return None
-
-
 class Receiver:
-    """Reads the socket on a thread of its own."""
+    """Reads a socket on a thread of its own, and closes it."""
 
-    def __init__(self, settings: Settings, stop: Event, changes: "PendingChanges") -> None:
-        """Raises PlantError, SclError, SignalError, RawSocketError."""
-        chosen = settings.gateways.goose
-        assert chosen is not None  # noqa: S101 - it was started for them
-        if settings.scd is None:
-            raise SignalError("gateways.goose: expected the setting scd, whose GSEControl says what is sent")
-        blocks = watched_blocks(chosen, scl.read(settings.scd), read_plant(settings))
-        self._listener = GooseListener(blocks, simulated=chosen.simulated)
-        self._socket = RawSocket(chosen.interface, destinations(blocks))
-        self._socket.wait_at_most(LOOK_S)
-        self._interface = chosen.interface
-        self._stop = stop
+    def __init__(
+        self,
+        socket: RawSocket,
+        listener: GooseListener,
+        changes: "PendingChanges",
+        stop: Event,
+    ) -> None:
+        socket.wait_at_most(LOOK_S)
+        self._socket = socket
+        self._listener = listener
         self._changes = changes
-        self.problem: str | None = self._listener.problem
+        self._stop = stop
+        self.problem: str | None = listener.problem
         """What does not work; None where all does."""
         self._thread = Thread(target=self._run, name="GOOSE receiver", daemon=True)
-        log.info("listening to GOOSE", interface=chosen.interface, blocks=len(blocks))
 
     def start(self) -> None:
         """Begin to read."""
@@ -119,8 +153,10 @@ class Receiver:
             except TimeoutError:
                 pass
             except OSError as error:  # The interface is down or gone: a new socket is had once it is back.
-                self.problem = f"{self._interface}: {error}"
-                log.warning("the interface for GOOSE fails", interface=self._interface, error=str(error))
+                self.problem = f"{self._socket.interface}: {error}"
+                log.warning(
+                    "the interface for GOOSE fails", interface=self._socket.interface, error=str(error)
+                )
                 return
             now_s = time.monotonic()
             for change in self._listener.receive(octets, now_s) if octets else ():
@@ -167,8 +203,11 @@ class SignalWriter:
         self._repository = repository
         self._most_open = most_open
 
-    def write(self, change: SignalChange, now_ns: int) -> None:
-        """Write what a change means. Raises SQLAlchemyError where the database does not answer."""
+    def write(self, change: SignalChange, now_ns: int, key: str) -> None:
+        """Write what a change means. Raises SQLAlchemyError where the database does not answer.
+
+        key: of this change. Written again with it, nothing is asked for twice.
+        """
         log.info("a GOOSE signal", signal=change.signal.reference, is_on=change.is_on)
         for motor in change.signal.motors:
             try:
@@ -176,7 +215,7 @@ class SignalWriter:
                     self._tell_trip(motor, change, now_ns)
                 elif change.is_on:
                     self._repository.request_recording(
-                        motor, by=GOOSE, now_ns=now_ns, most_open=self._most_open
+                        motor, by=GOOSE, now_ns=now_ns, idempotency_key=key, most_open=self._most_open
                     )
             except NotFoundError as error:
                 log.warning("a GOOSE signal has no motor", error=str(error))

@@ -40,24 +40,19 @@ class GooseListener:
             )
             for block in blocks
         }
-        self.garbled = 0
-        """Frames that were none."""
-        self.foreign = 0
-        """Frames of other control blocks."""
+        self._has_refused = False
 
     def receive(self, octets: bytes, now_s: float) -> list[SignalChange]:
         """Return what a frame changed. now_s: of a steady clock."""
         try:
             frame = decode_frame(octets)
         except GooseFrameError as error:
-            self.garbled += 1
-            log.debug("a GOOSE frame is refused", reason=str(error))
+            if not self._has_refused:
+                self._has_refused = True
+                log.warning("a GOOSE frame is refused; further ones are not told", reason=str(error))
             return []
         watched = self._watched.get(frame.message.control_block)
-        if watched is None:
-            self.foreign += 1
-            return []
-        return list(self._taken(watched, frame, now_s))
+        return [] if watched is None else list(self._taken(watched, frame, now_s))
 
     def expire(self, now_s: float) -> None:
         """See which senders have fallen silent."""

@@ -1,6 +1,6 @@
 """Which GOOSE control blocks of the SCL tell of trips, or of what is to be recorded, and where in them."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import Enum
 
@@ -10,7 +10,6 @@ from scl import Scl
 from scl.data_model import DataAttribute, DataObject
 from scl.goose_blocks import GooseBlock, GooseMember, goose_blocks
 from service.configuration.gateways.goose import GooseSettings
-from service.plant import Plant
 
 TRIP_CLASS, TRIP_OBJECT = "PTRC", "Tr"
 _STATES = ("general", "stVal")
@@ -25,30 +24,27 @@ class Meaning(Enum):
     TRIGGER = "trigger"
 
 
+Place = tuple[int, ...]
+"""Where a value stands in a message: the member's number, and what it has below that."""
+
+
 @dataclass(frozen=True, slots=True)
 class Signal:
     """A Boolean in the messages of a control block.
 
-    place: of its member in the data set.  state, quality: their places in the member's structure; state is
-    None where the member is the Boolean itself, and quality where it has none.
+    motors: those it is about.  state: its place.  quality: that of its quality; None where none is sent.
     """
 
     reference: str
     meaning: Meaning
     motors: tuple[str, ...]
-    place: int
-    state: int | None = None
-    quality: int | None = None
+    state: Place
+    quality: Place | None = None
 
-    def value(self, values: Sequence[Value]) -> bool | None:
+    def value(self, values: tuple[Value, ...]) -> bool | None:
         """Return whether it is on; None where the message does not tell, or its quality is bad."""
-        member = values[self.place]
-        if self.state is None:
-            return member if isinstance(member, bool) else None
-        if not isinstance(member, tuple) or len(member) <= max(self.state, self.quality or 0):
-            return None
-        state = member[self.state]
-        if self.quality is not None and not _is_usable(member[self.quality]):
+        state = _at(values, self.state)
+        if self.quality is not None and not _is_usable(_at(values, self.quality)):
             return None
         return state if isinstance(state, bool) else None
 
@@ -65,13 +61,17 @@ class SignalError(Exception):
     """The settings or the SCL do not fit what is asked; the message says what to do."""
 
 
-def watched_blocks(settings: GooseSettings, document: Scl, plant: Plant) -> tuple[WatchedBlock, ...]:
-    """Return the control blocks to subscribe to.
+def watched_blocks(
+    settings: GooseSettings, document: Scl, relays: Mapping[str, str]
+) -> tuple[WatchedBlock, ...]:
+    """Return the control blocks to subscribe to. relays: that of each motor.
 
     Raises SignalError: a trigger's signal is in no block, a motor is not known, or there is no block at all.
     """
-    motors_of = _motors_of_relays(plant)
-    wanted = _triggers(settings, plant)
+    motors_of: dict[str, tuple[str, ...]] = {}
+    for motor, relay in relays.items():
+        motors_of[relay] = (*motors_of.get(relay, ()), motor)
+    wanted = _triggers(settings, relays)
     found, seen = [], set[str]()
     for ied in document.ieds:
         own = motors_of.get(ied.name, ())
@@ -99,17 +99,9 @@ def watched_blocks(settings: GooseSettings, document: Scl, plant: Plant) -> tupl
     return tuple(found)
 
 
-def _motors_of_relays(plant: Plant) -> Mapping[str, tuple[str, ...]]:
-    found: dict[str, tuple[str, ...]] = {}
-    for motor in plant.motors:
-        found[motor.relay] = (*found.get(motor.relay, ()), motor.name)
-    return found
-
-
-def _triggers(settings: GooseSettings, plant: Plant) -> Mapping[str, tuple[str, ...]]:
-    known = {motor.name for motor in plant.motors}
+def _triggers(settings: GooseSettings, motors: Container[str]) -> Mapping[str, tuple[str, ...]]:
     for trigger in settings.triggers:
-        unknown = [name for name in trigger.motors if name not in known]
+        unknown = [name for name in trigger.motors if name not in motors]
         if unknown:
             raise SignalError(
                 f"gateways.goose.triggers {trigger.signal}: expected motors of the plant, found "
@@ -122,8 +114,8 @@ def _signals(
     block: GooseBlock, own: tuple[str, ...], wanted: Mapping[str, tuple[str, ...]], *, trips: bool
 ) -> Iterator[Signal]:
     """Yield what is looked for in a block. own: motors of the relay that sends it."""
-    for place, member in enumerate(block.members):
-        located = _located(member)
+    for number, member in enumerate(block.members):
+        located = _located(block, number)
         if located is None:
             continue
         reference, state, quality = located
@@ -134,40 +126,57 @@ def _signals(
                 raise SignalError(
                     f"gateways.goose.triggers {name}: expected motors, found none, and its relay has none"
                 )
-            yield Signal(name, Meaning.TRIGGER, motors, place, state, quality)
+            yield Signal(name, Meaning.TRIGGER, motors, state, quality)
         if trips and own and _is_trip(member):
-            yield Signal(reference, Meaning.TRIP, own, place, state, quality)
+            yield Signal(reference, Meaning.TRIP, own, state, quality)
 
 
-def _located(member: GooseMember) -> tuple[str, int | None, int | None] | None:
+def _located(block: GooseBlock, number: int) -> tuple[str, Place, Place | None] | None:
     """Return the reference of a member's Boolean, and the places of it and of its quality."""
-    data, reference = member.data, member.member.reference
-    if isinstance(data, DataAttribute):
-        return (reference, None, None) if data.basic_type == "BOOLEAN" and not data.count else None
+    member = block.members[number]
+    if isinstance(member.data, DataAttribute):
+        is_boolean = member.data.basic_type == "BOOLEAN" and not member.data.count
+        return (member.member.reference, (number,), _quality_beside(block, member)) if is_boolean else None
     # Sub-objects stand among the attributes in an order that the model does not keep.
-    if data is None or data.objects or data.count:
+    if member.data is None or member.data.objects or member.data.count:
         return None
-    return _located_in(data, reference, member)
+    return _located_in(member.data, member, number)
 
 
-def _located_in(
-    data: DataObject, reference: str, member: GooseMember
-) -> tuple[str, int | None, int | None] | None:
+def _located_in(data: DataObject, member: GooseMember, number: int) -> tuple[str, Place, Place | None] | None:
     sent = [attribute for attribute in data.attributes if attribute.fc is member.member.fc]
     names = [attribute.name for attribute in sent]
     for name in _STATES:
         if name in names and sent[names.index(name)].basic_type == "BOOLEAN":
-            quality = names.index("q") if "q" in names else None
-            return f"{reference}.{name}", names.index(name), quality
+            quality = (number, names.index("q")) if "q" in names else None
+            return f"{member.member.reference}.{name}", (number, names.index(name)), quality
     return None
 
 
+def _quality_beside(block: GooseBlock, member: GooseMember) -> Place | None:
+    """Return the place of the quality of an attribute, which is a member of its own."""
+    wanted = f"{member.member.reference.rpartition('.')[0]}.q"
+    numbers = (number for number, one in enumerate(block.members) if one.member.reference == wanted)
+    found = next(numbers, None)
+    return None if found is None else (found,)
+
+
 def _is_trip(member: GooseMember) -> bool:
-    node, path = member.member.logical_node, member.member.path.split(".")
-    return TRIP_CLASS in node and path[0] == TRIP_OBJECT and path[1:] in ([], ["general"])
+    path = member.member.path.split(".")
+    return member.ln_class == TRIP_CLASS and path[0] == TRIP_OBJECT and path[1:] in ([], ["general"])
 
 
-def _is_usable(quality: Value) -> bool:
+def _at(values: tuple[Value, ...], place: Place) -> Value | None:
+    """Return the value at a place; None where the message has none there."""
+    found: Value = values
+    for number in place:
+        if not isinstance(found, tuple) or len(found) <= number:
+            return None
+        found = found[number]
+    return found
+
+
+def _is_usable(quality: Value | None) -> bool:
     """Tell whether a quality is good, and not that of a test."""
     if not isinstance(quality, BitString) or len(quality.bits) != _QUALITY_BITS:
         return False

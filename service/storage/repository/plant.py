@@ -174,6 +174,12 @@ class PlantRows(Sessions):
             query = select(MotorRow.name, MotorRow.schedule).where(MotorRow.in_service)
             return dict(session.execute(query).all())
 
+    def relays_of_motors(self) -> Mapping[str, str]:
+        """Return the relay of each motor in service, by its name."""
+        with self._read() as session:
+            query = select(MotorRow.name, MotorRow.ied).where(MotorRow.in_service).order_by(MotorRow.name)
+            return dict(session.execute(query).all())
+
     def motor(self, name: str) -> MotorEntry:
         """Return a motor by its name. Raises NotFoundError."""
         with self._read() as session:

@@ -13,22 +13,25 @@ from dataclasses import replace
 from pathlib import Path
 
 import scl
+from core.warm_up import warm_up
 from ied_sim.relay.protection import DefiniteTime, ProtectionSettings
 from ied_sim.scenario.scenario import healthy_reference
 from ied_sim.simulator import Simulator
 from mms import BitString, Timestamp, Value
 from mms.goose import PublishedBlock, Publisher, RawSocket
 from scl import Address
+from scl.goose_blocks import GooseBlock, goose_blocks
 from service.alarms.kinds import AlarmKind
 from service.configuration.gateways.goose import GooseSettings, GooseTrigger
+from service.configuration.gateways.modbus import ModbusSettings
 from service.configuration.gateways.settings import GatewaysSettings
-from service.configuration.settings import Settings, sqlite_url
-from service.gateways.supervision import PlantGateways
+from service.configuration.settings import Settings
+from service.gateways.supervision import PlantGateways, PlantGatewayStatus
+from service.jobs.worker_pool import WorkerPool
 from service.plant import read_plant
 from service.storage import Repository, connect
 from service.storage.records import Alarm, RecordingRequest
 from testing.ports import LOOPBACK, free_port
-from testing.relays.goose import APPLICATION_ID, BLOCK, DATA_SET, REVISION, with_goose
 from testing.service.database import make_database
 from testing.service.gateways import started_gateways
 from testing.waiting import wait_until
@@ -36,9 +39,7 @@ from tests.service.gateways.goose.plant import MOTORS
 
 TRIP = "A1_SEL710PRO/TRIPPTRC1.Tr.general"
 TRIPS_AFTER_S = 2.0
-MEMBERS = 9
-SEEN_S = 0.7
-"""Long enough for the gateway to do what it must not do."""
+LONGEST_S = 60.0
 GOOD, BAD = BitString((False,) * 13), BitString((False, True, *(False,) * 11))
 
 
@@ -48,16 +49,19 @@ def main(directory: Path) -> None:
         if words == "left up":
             _ip("link add left type veth peer name right")
         _ip(f"link set {words}")
-    plain, sent = directory / "plain.scd", directory / "plant.scd"
+    file = directory / "plant.scd"
     names = [ied.name for ied in scl.read(scl.DEMO_PLANT_SCD).ieds]
-    scl.with_addresses(scl.DEMO_PLANT_SCD, plain, {name: Address(LOOPBACK, free_port()) for name in names})
-    document = with_goose(plain, sent)
+    scl.with_addresses(scl.DEMO_PLANT_SCD, file, {name: Address(LOOPBACK, free_port()) for name in names})
+    document = scl.read(file)
+    (block,) = goose_blocks(document.ied("A1_SEL710"))
     goose = GooseSettings(interface="right", triggers=(GooseTrigger(signal=TRIP, motors=("FAN-A2",)),))
     settings = Settings(
-        data_directory=directory, scd=sent, motors=MOTORS, gateways=GatewaysSettings(goose=goose)
+        data_directory=directory,
+        scd=file,
+        motors=MOTORS,
+        gateways=GatewaysSettings(goose=goose, modbus=ModbusSettings(port=free_port())),
     )
-    make_database(directory)
-    repository = Repository(connect(sqlite_url(directory)))
+    repository = Repository(connect(make_database(directory)))
     repository.sync_plant(read_plant(settings))
     trips = replace(
         healthy_reference("A1_SEL710"),
@@ -69,17 +73,20 @@ def main(directory: Path) -> None:
         # It listens before anybody tells: what a trip triggers is over for one that comes later.
         _problem(gateways, "not heard")
         with relays:
-            wait_until(lambda: gateways.status()[0].problem is None, "all relays to be heard")
+            wait_until(lambda: _goose(gateways).problem is None, "all relays to be heard")
             _trip(gateways, repository, found)
     with started_gateways(settings) as gateways, RawSocket("left") as sender:
         found["silent"] = _problem(gateways, "not heard")
-        _lie(sender, repository, found)
+        _lie(gateways, sender, block, repository, found)
     print(json.dumps(found))  # noqa: T201 - the test reads it
 
 
 def _trip(gateways: PlantGateways, repository: Repository, found: dict[str, object]) -> None:
     """Wait for what a relay's trip does, and kill the gateway."""
-    found["capabilities"] = _capabilities(gateways.status()[0].process_id)
+    wait_until(lambda: all(one.process_id for one in gateways.status()), "the gateways' processes")
+    found["capabilities"] = {one.kind: _capabilities(one.process_id) for one in gateways.status()} | {
+        "worker": _of_job_worker()
+    }
     wait_until(lambda: _alarms(repository), "the alarm of the trip")
     wait_until(lambda: _requests(repository), "the request that the trip triggers")
     (alarm,) = _alarms(repository)
@@ -90,55 +97,74 @@ def _trip(gateways: PlantGateways, repository: Repository, found: dict[str, obje
     found["requests after the kill"] = len(_requests(repository))
 
 
-def _lie(sender: RawSocket, repository: Repository, found: dict[str, object]) -> None:
+def _lie(
+    gateways: PlantGateways,
+    sender: RawSocket,
+    block: GooseBlock,
+    repository: Repository,
+    found: dict[str, object],
+) -> None:
     """Tell, as the relay, what does not count; then what does: that the trip has fallen."""
     sender.send(bytes.fromhex("010ccd010000") + bytes(6) + b"\x88\xb8" + os.urandom(200))
-    for name, revision, quality in (("revision", REVISION + 1, GOOD), ("quality", REVISION, BAD)):
-        publisher = _publisher(sender, revision, quality)
-        for _ in range(5):
-            sender.send(publisher.next_frame(0.0))
-        time.sleep(SEEN_S)
-        found[f"alarms after a wrong {name}"] = len(_alarms(repository))
-    publisher = _publisher(sender, REVISION, GOOD)
+    wrong = _Relay(sender, block, GOOD, revision=block.control.configuration_revision + 1)
+    reason = "another confRev than configured"
+    wait_until(lambda: wrong.tells() and reason in (_goose(gateways).problem or ""), reason)
+    found["after a wrong revision"] = [reason, len(_alarms(repository))]
 
-    def is_cleared() -> bool:
-        sender.send(publisher.next_frame(0.0))
-        return not _alarms(repository)
+    bad = _Relay(sender, block, BAD)
+    heard = "5 of 6"
+    wait_until(lambda: bad.tells() and heard in (_goose(gateways).problem or ""), "the relay to be heard")
+    found["after a bad quality"] = [True, len(_alarms(repository))]
 
+    good = _Relay(sender, block, GOOD)
     # A sender that begins anew is one that replays, until it was silent for as long as it promised.
-    wait_until(is_cleared, "the alarm to be cleared")
+    wait_until(lambda: good.tells() and not _alarms(repository), "the alarm to be cleared")
     found["alarms after the truth"] = len(_alarms(repository))
 
 
-def _publisher(sender: RawSocket, revision: int, quality: BitString) -> Publisher:
-    """Return one that tells as A1_SEL710 that nothing has tripped."""
-    block = PublishedBlock(
-        reference=f"A1_SEL710CFG/LLN0$GO${BLOCK}",
-        data_set=f"A1_SEL710CFG/LLN0${DATA_SET}",
-        goose_id="A1_SEL710",
-        configuration_revision=revision,
-        destination=bytes.fromhex("010ccd010000"),
-        application_id=APPLICATION_ID,
-    )
-    member: Value = (False, quality, Timestamp(time.time_ns()))
-    return Publisher(block, sender.address, (member,) * MEMBERS, time.time_ns())
+class _Relay:
+    """Tells as a relay that nothing has tripped."""
+
+    def __init__(
+        self, sender: RawSocket, block: GooseBlock, quality: BitString, *, revision: int | None = None
+    ) -> None:
+        member: Value = (False, quality, Timestamp(time.time_ns()))
+        self._sender = sender
+        address = block.control.address
+        assert address is not None
+        published = PublishedBlock(
+            reference=block.reference,
+            data_set=block.data_set,
+            goose_id=block.control.application_id,
+            configuration_revision=revision or block.control.configuration_revision,
+            destination=address.mac,
+            application_id=address.application_id,
+        )
+        self._publisher = Publisher(published, sender.address, (member,) * len(block.members), time.time_ns())
+
+    def tells(self) -> bool:
+        """Send its state once more."""
+        self._sender.send(self._publisher.next_frame(0.0))
+        return True
+
+
+def _goose(gateways: PlantGateways) -> PlantGatewayStatus:
+    return next(one for one in gateways.status() if one.kind == "goose")
 
 
 def _kill(gateways: PlantGateways) -> None:
-    killed = gateways.status()[0].process_id
+    killed = _goose(gateways).process_id
     assert killed is not None
     os.kill(killed, signal.SIGKILL)
     wait_until(
-        lambda: (
-            gateways.status()[0].process_id not in (None, killed) and gateways.status()[0].problem is None
-        ),
+        lambda: _goose(gateways).process_id not in (None, killed) and _goose(gateways).problem is None,
         "the gateway to be back",
     )
 
 
 def _problem(gateways: PlantGateways, words: str) -> str:
-    wait_until(lambda: words in (gateways.status()[0].problem or ""), words)
-    return gateways.status()[0].problem or ""
+    wait_until(lambda: words in (_goose(gateways).problem or ""), words)
+    return _goose(gateways).problem or ""
 
 
 def _alarms(repository: Repository) -> list[Alarm]:
@@ -150,9 +176,19 @@ def _requests(repository: Repository) -> list[RecordingRequest]:
     return list(repository.recording_requests(limit=10).items)
 
 
-def _capabilities(process: int | None) -> str:
+def _capabilities(process: int | str | None) -> str:
     lines = Path(f"/proc/{process}/status").read_text().splitlines()
     return next(line.split()[1] for line in lines if line.startswith("CapEff"))
+
+
+def _of_job_worker() -> str:
+    """Return the capabilities of a worker that evaluates records."""
+    pool = WorkerPool(1, warm_up, is_ending=lambda: False)
+    pool.renew()
+    try:
+        return pool.schedule(_capabilities, "self", LONGEST_S).result()
+    finally:
+        pool.stop()
 
 
 def _ip(words: str) -> None:
