@@ -70,9 +70,10 @@ class Mosquitto:
         finally:
             self._process.send_signal(signal.SIGCONT)
 
-    def publish(self, topic: str, payload: bytes) -> None:
-        """Publish a message by mosquitto_pub."""
-        command = [program("mosquitto_pub"), *self._client(), "-t", topic, "-q", "1", "-s"]
+    def publish(self, topic: str, payload: bytes, *, retain: bool = False) -> None:
+        """Publish a message by mosquitto_pub. retain: the broker keeps it."""
+        kept = ("-r",) if retain else ()
+        command = [program("mosquitto_pub"), *self._client(), "-t", topic, "-q", "1", *kept, "-s"]
         subprocess.run(command, input=payload, check=True, timeout=30)
 
     @contextmanager

@@ -32,12 +32,16 @@ Identifier = Annotated[str, Field(min_length=1, max_length=100), AfterValidator(
 
 
 class SparkplugSettings(BaseModel):
-    """The Sparkplug edge node: its group, and its own name in it."""
+    """The Sparkplug edge node: its group, and its own name in it.
+
+    primary_host: identifier of the host application without which it is not born; None for no such host.
+    """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     group: Identifier = "StatorWatch"
     edge_node: Identifier = "statorwatch"
+    primary_host: Identifier | None = None
 
 
 class MqttSettings(BaseModel):

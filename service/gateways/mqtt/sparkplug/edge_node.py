@@ -3,6 +3,7 @@
 import asyncio
 import time
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from pathlib import Path
 
 import structlog
@@ -12,11 +13,12 @@ from core.units import NANOSECONDS_PER_MILLISECOND
 from service.configuration.gateways.mqtt import MqttSettings, SparkplugSettings
 from service.gateways.context import GatewayContext
 from service.gateways.kept_file import KeptFileError, read_kept, write_kept
-from service.gateways.mqtt.broker import AT_LEAST_ONCE, Broker, first_of
+from service.gateways.mqtt.broker import AT_LEAST_ONCE, LOOK_S, Broker, first_of
 from service.gateways.mqtt.documents import VERSION
 from service.gateways.mqtt.plant_feed import PlantFeed
 from service.gateways.mqtt.sparkplug.metrics import changed, of_motor
 from service.gateways.mqtt.sparkplug.payload import DataType, Metric, PayloadError, encode, is_ordered
+from service.gateways.mqtt.sparkplug.primary_host import PrimaryHost
 from service.gateways.mqtt.topics import level
 from service.gateways.plant_state.figures import PlantChange, PlantState
 
@@ -68,6 +70,7 @@ class EdgeNode:
         self._stop = context.stop
         self._feed = feed
         self._say = say
+        self._host = None if names.primary_host is None else PrimaryHost(names.primary_host, NAMESPACE)
         self._births = BirthNumber(context.settings.data_directory)
         self._birth = 0
         self._sequence = 0
@@ -86,17 +89,31 @@ class EdgeNode:
         return Broker(self._settings, will, client_id=f"{self._settings.client_id}-sparkplug")
 
     async def session(self, broker: Broker) -> None:
-        """Be born, tell changes, and hear commands until the gateway is to end, or the connection is lost."""
+        """Be born, tell changes, and hear commands.
+
+        It ends when the gateway is to end, the primary host goes offline, or the connection is lost.
+        """
         self._told, self._is_born = self._feed.begin(), False
         self._ordered.clear()
-        granted = await broker.subscribe(self._topic("NCMD"), qos=AT_LEAST_ONCE)
-        if any((one if isinstance(one, int) else one.value) >= 0x80 for one in granted):
-            raise MqttError("the broker refuses the edge node's subscription to its commands")
-        self._say(None)
+        await self._subscribe(broker, self._topic("NCMD"), "its commands")
+        if self._host is None:
+            self._say(None)
+        else:
+            self._host.forget()
+            self._say(f"the edge node waits for its primary host {self._host.name} to be online")
+            await self._subscribe(broker, self._host.topic, "the state of its primary host")
         await first_of(broker.lost(), self._hear(broker), self._bear_again(broker), self._tell(broker))
+        if self._is_born:
+            await broker.publish(self._topic("NDEATH"), self._death(), qos=AT_LEAST_ONCE)
         await broker.leave_with_will()
 
+    async def _subscribe(self, broker: Broker, topic: str, what: str) -> None:
+        granted = await broker.subscribe(topic, qos=AT_LEAST_ONCE)
+        if any((one if isinstance(one, int) else one.value) >= 0x80 for one in granted):
+            raise MqttError(f"the broker refuses the edge node's subscription to {what}")
+
     async def _tell(self, broker: Broker) -> None:
+        await self._host_is_online()
         while not self._stop.is_set():
             change = await self._feed.next_change(self._told)
             if change is None:
@@ -107,7 +124,16 @@ class EdgeNode:
                     await self._tell_change(broker, change)
                 else:
                     await self._bear(broker)
-        await broker.publish(self._topic("NDEATH"), self._death(), qos=AT_LEAST_ONCE)
+
+    async def _host_is_online(self) -> None:
+        """Wait for the primary host, where there is one; no longer than the gateway runs."""
+        if self._host is None:
+            return
+        while not self._stop.is_set():
+            with suppress(TimeoutError):
+                await asyncio.wait_for(self._host.is_online.wait(), LOOK_S)
+                self._say(None)
+                return
 
     async def _bear(self, broker: Broker) -> None:
         """Tell everything, from sequence number 0 on."""
@@ -143,11 +169,18 @@ class EdgeNode:
                 await self._publish(broker, "DDATA", different, motor.name)
 
     async def _hear(self, broker: Broker) -> None:
-        """Hear commands. What is none, or is garbled, is left alone."""
+        """Hear commands, and the primary host's state until it goes offline after a birth.
+
+        What is no command, or is garbled, is left alone.
+        """
         async for message in broker.messages:
-            payload = message.payload
+            if self._host is not None and message.topic.value == self._host.topic:
+                self._host.hear(message.payload)
+                if self._is_born and not self._host.is_online.is_set():
+                    return
+                continue
             try:
-                if isinstance(payload, bytes) and is_ordered(payload, REBIRTH):
+                if is_ordered(message.payload, REBIRTH):
                     self._ordered.set()
             except PayloadError as error:
                 log.warning("a command of Sparkplug cannot be read", error=str(error))

@@ -41,6 +41,7 @@ def of_motor(motor: MotorFigures, state: PlantState) -> tuple[Metric, ...]:
         ("Condition/As Of", DataType.DATE_TIME, _ms(motor.as_of_ns)),
         ("Condition/Advice", DataType.STRING, motor.advice),
         ("Condition/Quality Reason", DataType.STRING, motor.quality_reason),
+        ("Running", DataType.STRING, motor.running),
         ("Device Health", DataType.STRING, motor.device_health),
         ("Alarms/Open", DataType.INT32, motor.alarms),
         ("Alarms/Priority", DataType.STRING, motor.priority),

@@ -15,7 +15,7 @@ from service.storage import Repository
 from service.storage.states import LinkState
 from testing.service import sparkplug
 from testing.service.conditions import FAULT, HEALTHY, tell
-from testing.service.gateways import running_gateways
+from testing.service.gateways import running_gateways, started_gateways
 from testing.service.links import set_link_state
 from testing.service.mosquitto import Heard, Mosquitto
 from testing.service.plants import NOW_NS, two_motor_plant
@@ -197,3 +197,43 @@ def test_sequence_numbers_begin_again_after_255(
     assert [one.sequence for one in found] == [number % 256 for number in range(301)]
     # tck-id-topic-structure-namespace-valid-device-id, tck-id-topic-structure-namespace-unique-device-id
     assert {one.device for one in found[1:]} == {f"Süd%2F{number}%2B%23" for number in range(300)}
+
+
+def test_a_node_is_born_and_dies_with_its_primary_host(
+    repository: Repository, broker: Mosquitto, tmp_path: Path
+) -> None:
+    state = "spBv1.0/STATE/SCADA1"
+
+    def host(text: str) -> None:
+        broker.publish(state, text.encode(), retain=True)
+
+    settings = settings_of(tmp_path, broker.port, sparkplug={"primary_host": "SCADA1"})
+    with broker.listening("spBv1.0/StatorWatch/#") as heard, started_gateways(settings) as gateways:
+
+        def waits() -> bool:
+            problem = gateways.status()[0].problem or ""
+            return "the edge node waits for its primary host SCADA1 to be online" in problem
+
+        wait_until(waits, "the edge node to wait")
+        # tck-id-message-flow-edge-node-birth-publish-phid-wait; what cannot be read changes nothing
+        for text in ('{"online": false, "timestamp": 1000}', '{"online": "yes", "timestamp": 1}', "[", "{}"):
+            host(text)
+        broker.publish(COMMANDS, sparkplug.encode(REBIRTH))
+        wait_until(lambda: kinds(heard) == ["NCMD"], "the command that changes nothing")
+        # tck-id-message-flow-edge-node-birth-publish-phid-wait-online, and -wait-id by the topic
+        host('{"online": true, "timestamp": 2000}')
+        wait_until(lambda: kinds(heard) == ["NCMD", *BORN], "the births")
+        wait_until(lambda: gateways.status()[0].problem is None, "nothing to be waited for")
+        # tck-id-operational-behavior-edge-node-termination-host-offline-timestamp
+        host('{"online": false, "timestamp": 1999}')
+        tell(repository, FAULT)
+        wait_until(lambda: kinds(heard)[4:] == ["DDATA"], "the change")
+        # tck-id-message-flow-edge-node-birth-publish-phid-offline: by the node, and by the broker its will
+        host('{"online": false, "timestamp": 3000}')
+        wait_until(lambda: kinds(heard)[5:] == ["NDEATH", "NDEATH"], "the death")
+        wait_until(waits, "the edge node to wait again")
+        # tck-id-operational-behavior-edge-node-termination-host-offline-reconnect
+        host('{"online": true, "timestamp": 4000}')
+        wait_until(lambda: kinds(heard)[7:] == BORN, "the births of the next connection")
+    first, second = told(heard, "NBIRTH")
+    assert (first.value("bdSeq"), second.value("bdSeq")) == (0, 1)

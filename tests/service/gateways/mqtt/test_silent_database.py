@@ -31,7 +31,7 @@ def test_nothing_is_good_any_more(repository: Repository, broker: Mosquitto, tmp
     # tck-id-topics-ndata-payload
     assert data[0].value("Database/Answers") is False
     qualities = {metric["properties"][0]["values"][0]["int_value"][0] for metric in data[1].metrics.values()}
-    assert (len(data[1].metrics), qualities) == (24, {500})
+    assert (len(data[1].metrics), qualities) == (25, {500})
 
 
 async def _tell(repository: Repository, broker: Mosquitto, directory: Path, heard: list[Heard]) -> None:
