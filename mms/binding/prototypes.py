@@ -49,6 +49,8 @@ CommandTerminationHandler = CFUNCTYPE(None, c_void_p, c_void_p)
 FileDirectoryHandler = CFUNCTYPE(None, c_void_p, c_char_p, c_uint32, c_uint64)
 # void (parameter, frsm id, buffer, bytes)
 FileReadHandler = CFUNCTYPE(None, c_void_p, c_int32, _BYTES, c_uint32)
+# void (invoke id, parameter, error, frsm id, buffer, bytes, more follows)
+FileReadAsyncHandler = CFUNCTYPE(None, c_uint32, c_void_p, c_int, c_int32, _BYTES, c_uint32, c_bool)
 # ControlHandlerResult (action, parameter, value, test)
 ControlHandler = CFUNCTYPE(c_int, c_void_p, c_void_p, c_void_p, c_bool)
 # ControlHandlerResult (action, parameter, value, test, synchro check)
@@ -209,6 +211,10 @@ PROTOTYPES: Final[dict[str, tuple[object, list[object]]]] = {
         [c_void_p, _ERROR, c_char_p, c_uint32, POINTER(c_uint32), POINTER(c_uint64)],
     ),
     "MmsConnection_fileRead": (c_bool, [c_void_p, _ERROR, c_int32, FileReadHandler, c_void_p]),
+    "MmsConnection_fileReadAsync": (
+        None,
+        [c_void_p, POINTER(c_uint32), _ERROR, c_int32, FileReadAsyncHandler, c_void_p],
+    ),
     "MmsConnection_fileClose": (None, [c_void_p, _ERROR, c_int32]),
     # server: model
     "ConfigFileParser_createModelFromConfigFileEx": (c_void_p, [c_char_p]),

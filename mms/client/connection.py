@@ -21,6 +21,7 @@ from mms.binding.library import library
 from mms.client.association import Association, resolve
 from mms.client.credentials import Credentials
 from mms.client.limits import DEFAULT_LIMITS, ClientLimits
+from mms.client.tick_loop import TickedConnection
 from mms.security.tls import TlsConfiguration
 
 _CONTROL_NUMBERS: Final = 256
@@ -35,7 +36,7 @@ class _State(Enum):
 class ServiceFunction(Protocol):
     """Function of the library whose first arguments are the connection and a cell for the error number."""
 
-    def __call__(self, connection: int, error: object, *arguments: object) -> object:
+    def __call__(self, connection: int, error: ctypes.c_int, *arguments: object) -> object:
         """Call the function."""
 
 
@@ -117,6 +118,11 @@ class Connection:
     def closing(self) -> bool:
         """Whether `abandon` or `close` has been called."""
         return self._state is not _State.OPEN
+
+    @property
+    def ticked(self) -> TickedConnection | None:
+        """The connection as a loop drives it; None where the library has a thread for it."""
+        return self._association.connection.ticked
 
     def wait_closed(self, timeout_s: float | None) -> bool:
         """Wait until the association has ended.
@@ -279,7 +285,7 @@ class Connection:
         error = ctypes.c_int(0)
         sent_s = time.monotonic()
         with nullcontext() if longest_s is None else self._association.connection.limited(longest_s) as over:
-            result = function(pointer, ctypes.byref(error), *arguments)
+            result = function(pointer, error, *arguments)
         took_s = time.monotonic() - sent_s
         if not error.value:
             self.round_trip_s = took_s

@@ -6,18 +6,22 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from typing import Final, Protocol
 
 from mms import errors
 from mms.binding.callbacks import guarded
-from mms.binding.prototypes import FileDirectoryHandler, FileReadHandler
+from mms.binding.prototypes import FileDirectoryHandler, FileReadAsyncHandler, FileReadHandler
 from mms.client.connection import Connection
 from mms.client.throughput import ThroughputLimit
+from mms.client.tick_loop import TickedConnection
 from mms.values import NANOSECONDS_PER_MILLISECOND
 
 log: Final = logging.getLogger("mms")
 
 _LONGEST_NAME: Final = 255
+_CONNECTION_LOST: Final = 2
+"""The library's MMS_ERROR_CONNECTION_LOST."""
 
 
 class Sink(Protocol):
@@ -245,16 +249,58 @@ class _Reader:
         self._operation = operation
         self._file = handle
         self._parts: list[bytes] = []
+        self._answers: list[tuple[int, bool]] = []
         self._handler = FileReadHandler(guarded(self._receive, None))
-
-    def _receive(self, _parameter: int | None, _handle: int, buffer: object, size: int) -> None:
-        self._parts.append(ctypes.string_at(buffer, size))  # type: ignore[arg-type]
+        self._async_handler = FileReadAsyncHandler(guarded(self._receive_answer, None))
 
     def read(self) -> tuple[bytes, bool]:
         """Carry out one FileRead; return the bytes and whether more follow."""
         self._parts.clear()
-        more = self._connection.request(
-            self._operation, self._connection.lib.MmsConnection_fileRead, self._file, self._handler, None,
-            make_error=errors.file_error,
-        )  # fmt: skip
+        ticked = self._connection.ticked
+        if ticked is None:
+            more = self._connection.request(
+                self._operation, self._connection.lib.MmsConnection_fileRead, self._file, self._handler, None,
+                make_error=errors.file_error,
+            )  # fmt: skip
+        else:
+            more = self._connection.request(
+                self._operation, partial(self._read_ticking, ticked), make_error=errors.file_error
+            )
         return b"".join(self._parts), bool(more)
+
+    def _read_ticking(
+        self, ticked: TickedConnection, mms: int, error: ctypes.c_int, *_arguments: object
+    ) -> bool:
+        """Do as the library's MmsConnection_fileRead, and let this thread read the answer."""
+        invoke_id = ctypes.c_uint32(0)
+        self._answers.clear()
+        self._connection.lib.MmsConnection_fileReadAsync(
+            mms, invoke_id, error, self._file, self._async_handler, None
+        )
+        if error.value:
+            return False
+        ticked.tick_until(lambda: bool(self._answers))
+        if not self._answers:
+            # The library may still call the handler when it frees the connection.
+            self._connection.keep_callback(self._async_handler)
+            error.value = _CONNECTION_LOST
+            return False
+        ((error.value, more),) = self._answers
+        return more
+
+    def _receive(self, _parameter: int | None, _handle: int, buffer: object, size: int) -> None:
+        self._parts.append(ctypes.string_at(buffer, size))  # type: ignore[arg-type]
+
+    def _receive_answer(
+        self,
+        _invoke_id: int,
+        _parameter: int | None,
+        error: int,
+        _handle: int,
+        buffer: object,
+        size: int,
+        more: bool,
+    ) -> None:
+        if not error and size:
+            self._parts.append(ctypes.string_at(buffer, size))  # type: ignore[arg-type]
+        self._answers.append((error, more))

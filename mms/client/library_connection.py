@@ -140,6 +140,11 @@ class LibraryConnection:
         """
         return nullcontext() if self._ticked is None else self._ticked.requesting(timeout_s)
 
+    @property
+    def ticked(self) -> TickedConnection | None:
+        """The connection as a loop drives it; None where the library has a thread for it."""
+        return self._ticked
+
     @contextmanager
     def limited(self, limit_s: float) -> Iterator[threading.Event]:
         """End the connection when a limit is over and the block has not ended.

@@ -32,6 +32,10 @@ _LONGEST_WAIT_S: Final = 0.25
 """So late a loop may notice the deadline of a request that began while it waited."""
 _DEADLINE_MARGIN_S: Final = 0.02
 """The library's clock counts milliseconds."""
+_OVERDUE_LOOK_S: Final = 0.01
+"""So seldom a loop that hears without end looks for what is overdue."""
+_EMPTY_TICK_S: Final = 0.009
+"""A tick that takes longer has found nothing."""
 _SECOND_LOOK_S: Final = 0.05
 _IDLE_LOOK_S: Final = 1.0
 """Relays send reports all day: looked at so seldom, each takes a hundredth of its loop at most."""
@@ -104,7 +108,9 @@ class TickedConnection:
         heard : bool
             Whether something has come.
         """
-        with self._ticking:
+        if not self._ticking.acquire(blocking=False):  # by the thread that waits for an answer
+            return
+        try:
             if not self._is_driven:
                 self._request_due_s = self._look_s = _NEVER
                 return
@@ -124,6 +130,31 @@ class TickedConnection:
             else:
                 overdue_s = now_s + max(_SECOND_LOOK_S, timeout_s / 4)
                 self._request_due_s = max(self._heard_s + timeout_s + _DEADLINE_MARGIN_S, overdue_s)
+        finally:
+            self._ticking.release()
+
+    def tick_until(self, is_answered: Callable[[], bool]) -> None:
+        """Read what comes on the caller's own thread, until its request is answered or the connection ends.
+
+        That spares waking a loop and being woken by it for each part of a file. The library ends a request
+        that is overdue in one of the ticks.
+
+        Parameters
+        ----------
+        is_answered : callable
+            Tells whether the answer has come.
+        """
+        self._loop.forget(self)
+        with self._ticking:
+            ready = select.poll()
+            ready.register(self.descriptor, select.POLLIN)
+            while not is_answered() and not self.has_closed():
+                began_s = time.monotonic()
+                self._loop.lib.IedConnection_tick(self._pointer)
+                if time.monotonic() - began_s > _EMPTY_TICK_S and not is_answered():
+                    ready.poll(1000 * _LONGEST_WAIT_S)
+        if not self.has_closed():
+            self._loop.resume(self)
 
     def stop(self) -> None:
         """Drive the connection no longer. No tick is under way afterwards; the library may be destroyed."""
@@ -172,10 +203,20 @@ class TickLoop:
             The connection, to be stopped before it is destroyed.
         """
         connection = TickedConnection(self, pointer, made, has_closed)
+        self.resume(connection)
+        return connection
+
+    def resume(self, connection: TickedConnection) -> None:
+        """Tick a connection again that was forgotten.
+
+        Parameters
+        ----------
+        connection : TickedConnection
+            The connection.
+        """
         with self._lock:
             self._connections[connection.descriptor] = connection
             self._epoll.register(connection.descriptor, select.EPOLLIN)
-        return connection
 
     def forget(self, connection: TickedConnection) -> None:
         """Tick a connection no more; a second call does nothing.
@@ -203,11 +244,17 @@ class TickLoop:
             self._watched.add(connection)
 
     def _run(self) -> None:
+        looked_s = 0.0
         while True:
-            for descriptor, _events in self._epoll.poll(self._wait_s()):
+            # The parts of a file come close together: how long to wait is worked out only when none is there.
+            heard = self._epoll.poll(0) or self._epoll.poll(self._wait_s())
+            for descriptor, _events in heard:
                 self._tick(self._connections.get(descriptor), heard=True)
-            for connection in self._overdue():
-                self._tick(connection, heard=False)
+            now_s = time.monotonic()
+            if not heard or now_s - looked_s >= _OVERDUE_LOOK_S:
+                looked_s = now_s
+                for connection in self._overdue(now_s):
+                    self._tick(connection, heard=False)
 
     def _tick(self, connection: TickedConnection | None, *, heard: bool) -> None:
         if connection is None:  # forgotten meanwhile
@@ -222,8 +269,7 @@ class TickLoop:
             due_s = min((each.due_s for each in self._watched), default=_NEVER)
         return min(max(due_s - time.monotonic(), 0.0), _LONGEST_WAIT_S)
 
-    def _overdue(self) -> list[TickedConnection]:
-        now_s = time.monotonic()
+    def _overdue(self, now_s: float) -> list[TickedConnection]:
         with self._lock:
             return [each for each in self._watched if each.due_s <= now_s]
 

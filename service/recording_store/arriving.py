@@ -1,19 +1,11 @@
 """The files of one record while they arrive, in a folder of this host."""
 
-import os
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from pathlib import Path
-from typing import BinaryIO
 
-from service.recording_store.contents import (
-    StoredFile,
-    describe,
-    entry_name,
-    hash_of_file,
-    manifest_digest,
-    safe_name,
-)
+from service.recording_store.arriving_file import ArrivingFile
+from service.recording_store.contents import StoredFile, entry_name, manifest_digest, safe_name
 from service.recording_store.errors import RecordingStoreError
 from service.recording_store.recording import StoredRecording
 
@@ -27,29 +19,29 @@ class Incoming:
     def __init__(self, directory: Path, keep: Keep) -> None:
         self._directory = directory
         self._keep = keep
+        self._files: dict[str, StoredFile] = {}
 
     @contextmanager
-    def create(self, name: str) -> Iterator[BinaryIO]:
+    def create(self, name: str) -> Iterator[ArrivingFile]:
         """Open a new file, which is on disk when the block ends. Raises RecordingStoreError (bad name)."""
         path = self._directory / safe_name(name)
         try:
-            sink = path.open("xb")
+            sink = ArrivingFile(path)
         except FileExistsError as error:
             raise RecordingStoreError(f"{name!r}: this record already has a file {path.name}") from error
-        with sink:
+        with closing(sink):
             yield sink
-            sink.flush()
-            os.fsync(sink.fileno())
+            self._files[path.name] = sink.finish()
 
     def sha256(self, name: str) -> str:
         """Return the SHA-256 of a file that was created here, hexadecimal."""
-        return hash_of_file(self._directory / safe_name(name))
+        return self._files[safe_name(name)].sha256
 
     def keep(self) -> StoredRecording:
         """Move the files to the place of their content, which may be there already.
 
         Raises RecordingStoreError (they are no record), OSError: nothing refers to what is there by then.
         """
-        files = describe(self._directory)
-        entry_name(file.name for file in files)
+        files = tuple(self._files[name] for name in sorted(self._files))
+        entry_name(self._files)
         return self._keep(self._directory, manifest_digest(files), files)

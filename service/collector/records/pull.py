@@ -4,13 +4,13 @@ A relay may send only so much in a day, so that one faulty relay cannot fill the
 """
 
 from collections.abc import Callable
-from typing import BinaryIO
 
 from core.units import NANOSECONDS_PER_DAY
 from mms import Client
 from service.collector.records.errors import RecordTooLargeError
 from service.collector.records.listing import ListedRecord
 from service.recording_store.arriving import Incoming
+from service.recording_store.arriving_file import ArrivingFile
 
 BLOCK_BYTES = 4096
 """The smallest file takes so much of a disk, and counts for so much."""
@@ -19,7 +19,7 @@ BLOCK_BYTES = 4096
 class _Counted:
     """A file that reports how much was written to it."""
 
-    def __init__(self, sink: BinaryIO, on_bytes: Callable[[int], None]) -> None:
+    def __init__(self, sink: ArrivingFile, on_bytes: Callable[[int], None]) -> None:
         self._sink = sink
         self._on_bytes = on_bytes
 

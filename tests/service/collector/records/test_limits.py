@@ -161,7 +161,7 @@ def test_nothing_is_deleted_on_a_relay(bench: Bench, relay: ScriptedRelay) -> No
         assert bench.reaches(request_id, RecordingRequestState.FETCHED)
     assert before.items() <= {path: path.read_bytes() for path in relay.events.iterdir()}.items()
     of_clients = {name for name in PROTOTYPES if "Connection_" in name and "file" in name.lower()}
-    reading = {"getFileDirectory", "fileOpen", "fileRead", "fileClose"}
+    reading = {"getFileDirectory", "fileOpen", "fileRead", "fileReadAsync", "fileClose"}
     assert {name.partition("_")[2] for name in of_clients} == reading, "there is no way to ask for more"
 
 
