@@ -19,11 +19,12 @@ from math import log
 from typing import Final
 
 import numpy as np
-from scipy.special import log_ndtr, logsumexp
+from numpy.typing import NDArray
+from scipy.special import log_ndtr
 
 from core.classification.causes import Cause, Causes
 from core.classification.evidence import Block
-from core.classification.record_model import RecordModel, Signature
+from core.classification.record_model import RecordModel
 from core.condition.observation import Observation
 from core.machines.parameters import Motor
 
@@ -52,36 +53,43 @@ def asymmetry_block(observation: Observation, motor: Motor) -> Block:
         If a number is missing, infinite or impossible, or the motor was not running on three phases.
     """
     model = RecordModel(observation, motor)
-    weighed = _Weighed(model)
-    by_cause: dict[Causes, list[float]] = {}
-    best: dict[Cause, _Fit] = {}
-    for fit in weighed.fits():
-        causes = frozenset(one.cause for one in fit.signatures)
-        by_cause.setdefault(causes, []).append(fit.log_evidence)
-        if len(fit.signatures) == 1:
-            (one,) = causes
-            if one not in best or fit.log_evidence > best[one].log_evidence:
-                best[one] = fit
+    signatures = model.signatures
+    singles, pairs = _Weighed(model).fits()
+    # The places and spreads of a cause are alternatives: their evidence adds up.
+    by_cause: dict[Causes, list[NDArray[np.float64]]] = {}
+    best: dict[Cause, tuple[float, str]] = {}
+    for fits in (singles, pairs):
+        for (*members,), evidence in zip(fits.groups, fits.log_evidence, strict=True):
+            causes = frozenset(signatures[k].cause for k in members)
+            by_cause.setdefault(causes, []).append(evidence)
+    for g, (k,) in enumerate(singles.groups):
+        s = int(np.argmax(singles.log_evidence[g]))
+        found = float(singles.log_evidence[g, s])
+        cause = signatures[k].cause
+        if cause not in best or found > best[cause][0]:
+            words = signatures[k].words(float(singles.size[g, s]), float(singles.deviation[g, s]))
+            best[cause] = found, words
     return Block(
-        causes=frozenset(one.cause for one in model.signatures),
-        log_likelihood={causes: float(logsumexp(found)) for causes, found in by_cause.items()},
-        figures={cause: fit.words for cause, fit in best.items()},
+        causes=frozenset(one.cause for one in signatures),
+        log_likelihood={
+            causes: float(np.logaddexp.reduce(found, axis=None)) for causes, found in by_cause.items()
+        },
+        figures={cause: words for cause, (_, words) in best.items()},
     )
 
 
 @dataclass(frozen=True, slots=True)
-class _Fit:
-    """One or two signatures fitted to a record, of one spread each."""
+class _Fits:
+    """Groups of one or two signatures, fitted to a record at each combination of spreads.
 
-    signatures: tuple[Signature, ...]
-    log_evidence: float
-    size: float
-    deviation: float
+    groups: numbers of the signatures.  log_evidence: of each group and combination, which share it alike.
+    size, deviation: of the group's first signature.
+    """
 
-    @property
-    def words(self) -> str:
-        """The first signature's size and place, in words."""
-        return self.signatures[0].words(self.size, self.deviation)
+    groups: Sequence[tuple[int, ...]]
+    log_evidence: NDArray[np.float64]
+    size: NDArray[np.float64]
+    deviation: NDArray[np.float64]
 
 
 class _Weighed:
@@ -103,13 +111,13 @@ class _Weighed:
         self.projected = flat.T @ weighed[:, -1]
         self.spread = spread
 
-    def fits(self) -> list[_Fit]:
-        """Return the fits of all places of all causes, and of all pairs of different causes."""
+    def fits(self) -> tuple[_Fits, _Fits]:
+        """Return the fits of all places of all causes, and those of all pairs of different causes."""
         places = range(len(self.signatures))
         pairs = [two for two in combinations(places, 2) if len({self.signatures[k].cause for k in two}) == 2]
-        return [*self._fitted([(k,) for k in places]), *self._fitted(pairs)]
+        return self._fitted([(k,) for k in places]), self._fitted(pairs)
 
-    def _fitted(self, groups: Sequence[tuple[int, ...]]) -> list[_Fit]:
+    def _fitted(self, groups: Sequence[tuple[int, ...]]) -> _Fits:
         """Return the fits of groups of equally many signatures, at each combination of spreads."""
         count = len(groups[0])
         scales = np.array(list(product(SCALES, repeat=count)))
@@ -132,13 +140,4 @@ class _Weighed:
         evidence += np.where(one_sided[:, np.newaxis], positive, 0.0).sum(axis=-1)
         share = np.log([[self.signatures[k].share for k in group] for group in groups]).sum(axis=-1)
         evidence += share[:, np.newaxis] - log(len(scales))
-        return [
-            _Fit(
-                tuple(self.signatures[k] for k in group),
-                float(evidence[g, s]),
-                float(size[g, s, 0]),
-                float(deviation[g, s, 0]),
-            )
-            for g, group in enumerate(groups)
-            for s in range(len(scales))
-        ]
+        return _Fits(groups, evidence, size[..., 0], deviation[..., 0])

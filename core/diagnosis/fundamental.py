@@ -246,8 +246,8 @@ def _periodic(vectors: ComplexArray, window: _Window) -> tuple[ComplexArray, Com
     """
     highest = window.highest
     found, powers = _harmonics(vectors, window)
-    periodic = np.einsum("mk,kn->mn", found[:, highest:].conj(), powers).conj()
-    periodic += np.einsum("mk,kn->mn", found[:, highest - 1 :: -1], powers[1:])
+    periodic = (found[:, highest:].conj() @ powers).conj()
+    periodic += found[:, highest - 1 :: -1] @ powers[1:]
     return found[:, [highest + 1, highest - 1]], vectors - periodic
 
 
@@ -269,10 +269,9 @@ def _harmonics(vectors: ComplexArray, window: _Window) -> tuple[ComplexArray, Co
     return np.asarray(np.linalg.solve(gram, products.T).T, dtype=np.complex128), powers
 
 
-# einsum, not @: see core/signals/phasors.py.
 def _sums(powers: ComplexArray, values: ComplexArray | Array) -> ComplexArray:
     """Sum the values (..., n) times each power (orders, n), shape (..., orders)."""
-    return np.asarray(np.einsum("...n,kn->...k", values, powers))
+    return np.asarray(values @ powers.T)
 
 
 def _cycles(beside: ComplexArray, turning: ComplexArray, edges: NDArray[np.int64]) -> ComplexArray:

@@ -218,7 +218,7 @@ def _refine(
         basis = _rotating_vectors(frequency_hz * angle, orders)
         gram = _inner_products(2 * pi * frequency_hz / sample_rate_hz, n, orders)
         amplitudes = np.linalg.solve(gram, _products(basis, space_vector))
-        slope = 1j * angle * _combine(orders * amplitudes, basis)
+        slope = 1j * angle * ((orders * amplitudes) @ basis)
         # What the fit leaves has no part along the basis, nor has the gradient: products alone are needed.
         along = _products(basis, slope)
         left = np.vdot(slope, space_vector) - np.vdot(along, amplitudes)
@@ -248,15 +248,9 @@ def _check_dominant(
         )
 
 
-# einsum, not @: BLAS hands products of this size to its threads, and where the cores are busy the wait
-# for them (milliseconds a product) is a hundred times the work.
 def _products(basis: NDArray[np.complex128], x: NDArray[np.complex128]) -> NDArray[np.complex128]:
     """Inner products of the basis (orders, n) with x (n)."""
-    return np.asarray(np.einsum("kn,n->k", basis, x.conj()).conj())
-
-
-def _combine(weights: NDArray[np.complex128], basis: NDArray[np.complex128]) -> NDArray[np.complex128]:
-    return np.asarray(np.einsum("k,kn->n", weights, basis))
+    return np.asarray((basis @ x.conj()).conj())
 
 
 def _orders_below_nyquist(frequency_hz: float, sample_rate_hz: float) -> NDArray[np.int64]:
