@@ -153,8 +153,15 @@ def sizes(engine: Engine) -> Iterator[tuple[str, float]]:
 
 def vacuum(engine: Engine) -> None:
     """Give back the room of what was deleted: SQLite writes its file anew for that."""
+    if engine.dialect.name == "sqlite":  # ours begins a transaction in each connection
+        with engine.connect() as connection:
+            driver = connection.connection.driver_connection
+            assert driver is not None
+            connection.rollback()
+            driver.execute("VACUUM")
+        return
     with engine.connect().execution_options(isolation_level="AUTOCOMMIT") as connection:
-        connection.execute(text("VACUUM" if engine.dialect.name == "sqlite" else "VACUUM ANALYZE"))
+        connection.execute(text("VACUUM ANALYZE"))
 
 
 def run(url: str, arguments: argparse.Namespace, directory: Path) -> int:
