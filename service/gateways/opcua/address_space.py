@@ -16,7 +16,7 @@ from service.gateways.opcua.values import (
     relay_value,
 )
 from service.gateways.plant_state.figures import MotorFigures, PlantChange, RelayFigures
-from service.storage.records import Quantity
+from service.storage.records import Alarm, Quantity
 
 OURS: Final = "urn:statorwatch:plant"
 DEVICES: Final = "http://opcfoundation.org/UA/DI/"
@@ -79,6 +79,14 @@ class PlantNodes:
     def motor_node(self, motor: str) -> ua.NodeId:
         """Return the node of a motor, known or not."""
         return ua.NodeId(f"motor/{motor}", self._ours)
+
+    def source_of(self, alarm: Alarm) -> ua.NodeId:
+        """Return the node of what an alarm is about: a motor, a relay, or the service."""
+        if alarm.motor is not None:
+            return self.motor_node(alarm.motor)
+        if alarm.ied is not None:
+            return ua.NodeId(f"relay/{alarm.ied}", self._ours)
+        return ua.NodeId(ua.ObjectIds.Server)
 
     async def _add_motor(self, motor: MotorFigures) -> None:
         node = await self._add_device(f"motor/{motor.name}", self._machines, motor.name, motor.description)

@@ -64,7 +64,7 @@ async def _serve(context: GatewayContext, settings: OpcUaSettings) -> None:
             if change is not None:
                 await nodes.tell(change)
             if server.bserver is not None and change is not None:
-                await _tell_alarms(events, change)
+                await _tell_alarms(nodes, events, change)
             is_known = is_known or change is not None
             if server.bserver is None and is_known:
                 context.tell(await _begun(settings, server))
@@ -135,19 +135,19 @@ async def _events(server: Server) -> EventGenerator:
     return await server.get_event_generator(kind)
 
 
-async def _tell_alarms(events: EventGenerator, change: PlantChange) -> None:
+async def _tell_alarms(nodes: PlantNodes, events: EventGenerator, change: PlantChange) -> None:
     """Send an event for each alarm that is new, has changed, or is over."""
     for alarm in change.alarms:
-        await _send(events, alarm, str(alarm.state))
+        await _send(nodes, events, alarm, str(alarm.state))
     for gone in change.alarms_gone:
-        await _send(events, change.before.alarms[gone], "normal")
+        await _send(nodes, events, change.before.alarms[gone], "normal")
 
 
-async def _send(events: EventGenerator, alarm: Alarm, state: str) -> None:
+async def _send(nodes: PlantNodes, events: EventGenerator, alarm: Alarm, state: str) -> None:
     event = events.event
     event.Alarm, event.Motor, event.Kind = alarm.id, alarm.motor or "", str(alarm.kind)
     event.State, event.Standing = state, alarm.standing and state != "normal"
     event.Severity = SEVERITIES[alarm.priority]
-    event.SourceName = alarm.place
+    event.SourceNode, event.SourceName = nodes.source_of(alarm), alarm.place
     event.Time = utc(alarm.changed_ns)
     await events.trigger(message=alarm.reason)

@@ -211,6 +211,7 @@ def test_an_alarm_is_an_event(repository: Repository, open_settings: Settings) -
     looking(open_settings, lambda client: asyncio.wait_for(subscribe(client), 30))
     (event, *_) = seen
     assert (event.Kind, event.SourceName, event.Message.Text) == ("file-refused", "A1_SEL710", "cut off")
+    assert event.SourceNode.Identifier == "relay/A1_SEL710"
     assert event.Severity in (300, 500, 700, 900)
 
 
