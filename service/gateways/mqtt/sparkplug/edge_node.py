@@ -137,7 +137,7 @@ class EdgeNode:
 
     async def _bear(self, broker: Broker) -> None:
         """Tell everything, from sequence number 0 on."""
-        self._sequence = 0
+        self._sequence, self._is_born = 0, True
         now_ms = _now_ms()
         node = (
             self._birth_number(now_ms),
@@ -149,7 +149,6 @@ class EdgeNode:
         await self._publish(broker, "NBIRTH", node)
         for motor in self._told.motors.values():
             await self._publish(broker, "DBIRTH", of_motor(motor, self._told), motor.name)
-        self._is_born = True
 
     async def _tell_change(self, broker: Broker, change: PlantChange) -> None:
         if change.before.is_current != change.now.is_current:
@@ -169,14 +168,15 @@ class EdgeNode:
                 await self._publish(broker, "DDATA", different, motor.name)
 
     async def _hear(self, broker: Broker) -> None:
-        """Hear commands, and the primary host's state until it goes offline after a birth.
+        """Hear commands, and the primary host's state until it goes offline again.
 
         What is no command, or is garbled, is left alone.
         """
         async for message in broker.messages:
             if self._host is not None and message.topic.value == self._host.topic:
+                was_online = self._host.is_online.is_set()
                 self._host.hear(message.payload)
-                if self._is_born and not self._host.is_online.is_set():
+                if was_online and not self._host.is_online.is_set():
                     return
                 continue
             try:
