@@ -1,7 +1,7 @@
-"""Many small records of a relay, fetched alone and into the store: python -m benchmarks.collector.small_records.
+"""Many small records, fetched alone and into the store: python -m benchmarks.collector.small_records.
 
-The relay runs in a process of its own and gives as fast as it can. What the collector does beside, such as its
-rows in the database, is told by record_cost.
+The relay runs in a process of its own and gives as fast as it can. What the collector does beside, such as
+its rows in the database, is told by record_cost.
 """
 
 import argparse
