@@ -22,6 +22,10 @@ log: Final = logging.getLogger("mms")
 _LONGEST_NAME: Final = 255
 _CONNECTION_LOST: Final = 2
 """The library's MMS_ERROR_CONNECTION_LOST."""
+_NO_ANSWER: Final = 3
+"""The library's MMS_ERROR_SERVICE_TIMEOUT."""
+_MARGIN_S: Final = 2.0
+"""So much later than the library a part is given up, should the library not do so."""
 
 
 class Sink(Protocol):
@@ -274,16 +278,18 @@ class _Reader:
         """Do as the library's MmsConnection_fileRead, and let this thread read the answer."""
         invoke_id = ctypes.c_uint32(0)
         self._answers.clear()
+        # Unless it is answered, the library may still call the handler when it frees the connection.
+        self._connection.keep_callback(self._async_handler)
         self._connection.lib.MmsConnection_fileReadAsync(
             mms, invoke_id, error, self._file, self._async_handler, None
         )
+        if not error.value:
+            ticked.tick_until(lambda: bool(self._answers), self._connection.request_timeout_s + _MARGIN_S)
+            if not self._answers:
+                error.value = _CONNECTION_LOST if ticked.has_closed() else _NO_ANSWER
+                return False
+        self._connection.release_callback(self._async_handler)
         if error.value:
-            return False
-        ticked.tick_until(lambda: bool(self._answers))
-        if not self._answers:
-            # The library may still call the handler when it frees the connection.
-            self._connection.keep_callback(self._async_handler)
-            error.value = _CONNECTION_LOST
             return False
         ((error.value, more),) = self._answers
         return more
@@ -301,6 +307,10 @@ class _Reader:
         size: int,
         more: bool,
     ) -> None:
-        if not error and size:
-            self._parts.append(ctypes.string_at(buffer, size))  # type: ignore[arg-type]
-        self._answers.append((error, more))
+        answer = _NO_ANSWER, False
+        try:
+            if not error and size:
+                self._parts.append(ctypes.string_at(buffer, size))  # type: ignore[arg-type]
+            answer = error, more
+        finally:
+            self._answers.append(answer)  # in any case: the library calls once

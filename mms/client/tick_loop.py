@@ -133,7 +133,7 @@ class TickedConnection:
         finally:
             self._ticking.release()
 
-    def tick_until(self, is_answered: Callable[[], bool]) -> None:
+    def tick_until(self, is_answered: Callable[[], bool], timeout_s: float) -> None:
         """Read what comes on the caller's own thread, until its request is answered or the connection ends.
 
         That spares waking a loop and being woken by it for each part of a file. The library ends a request
@@ -143,18 +143,27 @@ class TickedConnection:
         ----------
         is_answered : callable
             Tells whether the answer has come.
+        timeout_s : float
+            Longest wait, which is longer than the library's own [s].
         """
         self._loop.forget(self)
-        with self._ticking:
-            ready = select.poll()
-            ready.register(self.descriptor, select.POLLIN)
-            while not is_answered() and not self.has_closed():
-                began_s = time.monotonic()
-                self._loop.lib.IedConnection_tick(self._pointer)
-                if time.monotonic() - began_s > _EMPTY_TICK_S and not is_answered():
-                    ready.poll(1000 * _LONGEST_WAIT_S)
-        if not self.has_closed():
-            self._loop.resume(self)
+        try:
+            with self._ticking:
+                self._tick_until(is_answered, time.monotonic() + timeout_s)
+        finally:
+            if not self.has_closed():
+                self._loop.resume(self)
+
+    def _tick_until(self, is_answered: Callable[[], bool], end_s: float) -> None:
+        ready = select.poll()
+        ready.register(self.descriptor, select.POLLIN)
+        while not is_answered() and not self.has_closed():
+            began_s = time.monotonic()
+            if began_s > end_s:
+                return
+            self._loop.lib.IedConnection_tick(self._pointer)
+            if time.monotonic() - began_s > _EMPTY_TICK_S and not is_answered():
+                ready.poll(1000 * _LONGEST_WAIT_S)
 
     def stop(self) -> None:
         """Drive the connection no longer. No tick is under way afterwards; the library may be destroyed."""

@@ -24,7 +24,6 @@ from service.cli.commands import (
     stored,
 )
 from service.cli.output import DONE, FAILED, WRONG_USE, CommandError, print_failure
-from service.process.numerical_threads import use_one_thread
 
 app = typer.Typer(
     name="mcc",
@@ -76,7 +75,6 @@ for _part in _PARTS:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command. Returns 0 done, 1 failed, 2 wrong use."""
-    use_one_thread()
     words = list(sys.argv[1:] if arguments is None else arguments)
     # The demo's --json names a file, which the command writes itself.
     in_json = "--json" in words and words[0] != "demo"

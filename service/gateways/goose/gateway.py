@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Sequence
+from contextlib import suppress
 from threading import Condition, Event, Thread
 from typing import Final
 from uuid import uuid4
@@ -46,17 +47,15 @@ def run(context: GatewayContext) -> None:
     chosen = context.settings.gateways.goose
     assert chosen is not None  # noqa: S101 - it was started for them
     blocks = _watched_blocks(context, chosen)
-    listener = GooseListener(blocks, simulated=chosen.simulated)
-    writer = SignalWriter(context.repository, context.settings.max_open_requests)
+    if not blocks:
+        return
     changes = PendingChanges()
-    while (socket := _socket(context, chosen.interface, blocks)) is not None:
-        log.info("listening to GOOSE", interface=chosen.interface, blocks=len(blocks))
-        receiver = Receiver(socket, listener, changes, context.stop)
-        receiver.start()
-        try:
-            _write_changes(context, receiver, changes, writer)
-        finally:
-            receiver.stop()
+    receiver = Receiver(chosen, blocks, changes, context.stop)
+    receiver.start()
+    try:
+        _write_changes(context, receiver, changes)
+    finally:
+        receiver.stop()
 
 
 def _watched_blocks(context: GatewayContext, chosen: GooseSettings) -> tuple[WatchedBlock, ...]:
@@ -83,22 +82,10 @@ def _document(settings: Settings) -> scl.Scl:
     return scl.read(settings.scd)
 
 
-def _socket(context: GatewayContext, interface: str, blocks: Sequence[WatchedBlock]) -> RawSocket | None:
-    """Return a socket that hears the blocks; None where the service is gone before it can be had."""
+def _write_changes(context: GatewayContext, receiver: "Receiver", changes: "PendingChanges") -> None:
+    """Write what is heard until the service is gone, whether the interface still works or not."""
+    writer = SignalWriter(context.repository, context.settings.max_open_requests)
     while not context.stop.is_set():
-        try:
-            return RawSocket(interface, destinations(blocks))
-        except RawSocketError as error:  # An interface may come up later.
-            context.tell(str(error))
-            context.stop.wait(REOPEN_S)
-    return None
-
-
-def _write_changes(
-    context: GatewayContext, receiver: "Receiver", changes: "PendingChanges", writer: "SignalWriter"
-) -> None:
-    """Write what is heard until the receiver ends: the service is gone, or the interface is."""
-    while receiver.is_listening:
         change = changes.wait_for_next(LOOK_S)
         key = uuid4().hex
         while change is not None and not context.stop.is_set():
@@ -112,21 +99,17 @@ def _write_changes(
 
 
 class Receiver:
-    """Reads a socket on a thread of its own, and closes it."""
+    """Reads a socket on a thread of its own, and opens it again where the interface fails."""
 
     def __init__(
-        self,
-        socket: RawSocket,
-        listener: GooseListener,
-        changes: "PendingChanges",
-        stop: Event,
+        self, chosen: GooseSettings, blocks: Sequence[WatchedBlock], changes: "PendingChanges", stop: Event
     ) -> None:
-        socket.wait_at_most(LOOK_S)
-        self._socket = socket
-        self._listener = listener
+        self._interface = chosen.interface
+        self._groups = destinations(blocks)
+        self._listener = GooseListener(blocks, simulated=chosen.simulated)
         self._changes = changes
         self._stop = stop
-        self.problem: str | None = listener.problem
+        self.problem: str | None = self._listener.problem
         """What does not work; None where all does."""
         self._thread = Thread(target=self._run, name="GOOSE receiver", daemon=True)
 
@@ -135,29 +118,32 @@ class Receiver:
         self._thread.start()
 
     def stop(self) -> None:
-        """Wait for the thread, which has ended or does so by the event, and close the socket."""
+        """Wait for the thread, which ends by the event."""
         self._thread.join()
-        self._socket.close()
-
-    @property
-    def is_listening(self) -> bool:
-        """Whether the socket is still read."""
-        return self._thread.is_alive()
 
     def _run(self) -> None:
+        while not self._stop.is_set():
+            try:
+                with RawSocket(self._interface, self._groups) as socket:
+                    socket.wait_at_most(LOOK_S)
+                    self._read(socket)
+            except RawSocketError as error:  # An interface may come up later.
+                self._fail(str(error))
+            except OSError as error:  # It is down or gone: a new socket is had once it is back.
+                self._fail(f"{self._interface}: {error}")
+
+    def _fail(self, problem: str) -> None:
+        if self.problem != problem:
+            log.warning("the GOOSE gateway hears nothing", reason=problem)
+            self.problem = problem
+        self._stop.wait(REOPEN_S)
+
+    def _read(self, socket: RawSocket) -> None:
         looked_s = 0.0
         while not self._stop.is_set():
             octets = None
-            try:
-                octets = self._socket.receive()
-            except TimeoutError:
-                pass
-            except OSError as error:  # The interface is down or gone: a new socket is had once it is back.
-                self.problem = f"{self._socket.interface}: {error}"
-                log.warning(
-                    "the interface for GOOSE fails", interface=self._socket.interface, error=str(error)
-                )
-                return
+            with suppress(TimeoutError):
+                octets = socket.receive()
             now_s = time.monotonic()
             for change in self._listener.receive(octets, now_s) if octets else ():
                 self._changes.add(change)

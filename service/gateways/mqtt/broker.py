@@ -128,6 +128,7 @@ async def stay_connected(
         try:
             async with connect() as broker:
                 await session(broker)
+            pause_s = SHORTEST_PAUSE_S
         except (MqttError, CredentialFileError, OSError) as error:
             say(str(error) or type(error).__name__)
         if stop.is_set():
@@ -153,8 +154,11 @@ async def _run(parts: Iterable[Coroutine[object, object, None]], until: str) -> 
     try:
         done, _ = await asyncio.wait(tasks, return_when=until)
     finally:
-        for task in tasks:
-            task.cancel()
+        # More than once: wait_for of Python 3.11 forgets a cancellation where what it waits for is done.
+        while pending := [task for task in tasks if not task.done()]:
+            for task in pending:
+                task.cancel()
+            await asyncio.wait(pending, timeout=LOOK_S)
         await asyncio.gather(*tasks, return_exceptions=True)
     for task in done:
         task.result()

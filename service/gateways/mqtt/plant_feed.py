@@ -52,5 +52,6 @@ class PlantFeed:
         """Return what differs from what was told; None where nothing does for so long."""
         if self._state is told:
             with suppress(TimeoutError):
-                await asyncio.wait_for(self._changed.wait(), longest_s)
+                async with asyncio.timeout(longest_s):
+                    await self._changed.wait()
         return None if self._state is told else PlantChange(told, self._state)

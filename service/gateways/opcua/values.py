@@ -132,7 +132,7 @@ def item_state_values(motor: MotorFigures, namespace: int) -> tuple[ua.DataValue
     name, node = ITEM_STATES[motor.running]
     text = ua.Variant(ua.LocalizedText(name, "en"), ua.VariantType.LocalizedText)
     place = ua.Variant(ua.NodeId(node, namespace), ua.VariantType.NodeId)
-    state, of_node = (_told_always(one, motor.quality, motor.running_ns) for one in (text, place))
+    state, of_node = (_told_always(one, motor.running_quality, motor.running_ns) for one in (text, place))
     return state, of_node
 
 

@@ -31,7 +31,8 @@ class MotorFigures:
     has them.  rotor: what its standing alarm says.  device_health: the worst of all that.
     since_ns: when the state began.  as_of_ns: time of the latest record in it, and of all values.
     voltage_unbalance, current_unbalance: negative over positive sequence, of the latest record that has them,
-    at unbalance_ns.  running_ns: when it was seen to run or stand, or its link ended.
+    at unbalance_ns.  running_ns: when it was seen to run or stand, or its link ended;
+    running_quality: uncertain where that is too long ago.
     alarms: how many call for somebody; priority: of the most urgent one.
     quality, quality_reason: of all figures; the reason is None where it is good.
     """
@@ -65,6 +66,7 @@ class MotorFigures:
     unbalance_ns: int | None
     running: RunningState
     running_ns: int | None
+    running_quality: Quality
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -101,9 +103,12 @@ class PlantState:
 
     def as_uncertain(self, reason: str) -> "PlantState":
         """Return it with no value that counts as good any more."""
+        motors = {
+            name: replace(motor, running_quality=Quality.UNCERTAIN) for name, motor in self.motors.items()
+        }
         return replace(
             self,
-            motors=_each_uncertain(self.motors, reason),
+            motors=_each_uncertain(motors, reason),
             relays=_each_uncertain(self.relays, reason),
             is_current=False,
         )

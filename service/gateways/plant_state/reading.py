@@ -50,11 +50,13 @@ def _motor(
     one: FleetMotor, unbalance: UnbalanceEntry | None, now_ns: int, stale_after_days: float | None
 ) -> MotorFigures:
     condition = one.condition
-    stale = is_stale(condition, now_ns, stale_after_ns(one.motor.schedule, stale_after_days))
+    oldest_ns = stale_after_ns(one.motor.schedule, stale_after_days)
+    stale = is_stale(condition, now_ns, oldest_ns)
     rotor = None if one.rotor is None else one.rotor.state
     quality, reason = _quality(one, stale=stale)
     running = running_state(one.link, condition.as_of_ns, condition.stood_ns)
     seen_ns = max(condition.as_of_ns or 0, condition.stood_ns or 0)
+    is_seen_lately = running is RunningState.UNKNOWN or now_ns - seen_ns <= oldest_ns
     return MotorFigures(
         name=one.motor.name,
         description=one.motor.description,
@@ -85,6 +87,7 @@ def _motor(
         unbalance_ns=None if unbalance is None else unbalance.time_ns,
         running=running,
         running_ns=one.link_changed_ns if running is RunningState.UNKNOWN else seen_ns,
+        running_quality=Quality.GOOD if is_seen_lately else Quality.UNCERTAIN,
     )
 
 

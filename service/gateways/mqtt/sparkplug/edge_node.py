@@ -100,9 +100,11 @@ class EdgeNode:
             self._say(None)
         else:
             self._host.forget()
-            self._say(f"the edge node waits for its primary host {self._host.name} to be online")
+            self._say(self._host.awaited)
             await self._subscribe(broker, self._host.topic, "the state of its primary host")
         await first_of(broker.lost(), self._hear(broker), self._bear_again(broker), self._tell(broker))
+        if self._host is not None and not self._stop.is_set():
+            self._say(self._host.awaited)
         if self._is_born:
             await broker.publish(self._topic("NDEATH"), self._death(), qos=AT_LEAST_ONCE)
         await broker.leave_with_will()
@@ -131,7 +133,8 @@ class EdgeNode:
             return
         while not self._stop.is_set():
             with suppress(TimeoutError):
-                await asyncio.wait_for(self._host.is_online.wait(), LOOK_S)
+                async with asyncio.timeout(LOOK_S):
+                    await self._host.is_online.wait()
                 self._say(None)
                 return
 

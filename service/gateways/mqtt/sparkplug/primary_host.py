@@ -21,7 +21,7 @@ class PrimaryHost:
     """Whether the host is online, as far as one connection to the broker has heard."""
 
     def __init__(self, name: str, namespace: str) -> None:
-        self.name = name
+        self.awaited = f"the edge node waits for its primary host {name} to be online"
         self.topic = f"{namespace}/STATE/{name}"
         self.is_online = asyncio.Event()
         self._timestamp_ms = 0

@@ -49,6 +49,9 @@ def test_the_state_of_motors_relays_and_alarms_is_kept_by_the_broker(
             tell(repository, FAULT)
             wait_until(lambda: last(heard, "/PUMP-A1/state").get("state") == "fault")
             assert eventually(lambda: last(heard, STATUS)["state"] == "online")
+            # What happens once is told after the states, and not kept.
+            wait_until(lambda: last(heard, "changes/conditions").get("state") == "fault", "the change")
+            wait_until(lambda: last(heard, "changes/alarms"), "the alarm")
         with broker.listening("statorwatch/#") as later:
             wait_until(lambda: last(later, "/A1_SEL710/state"))
             pump = last(later, "/PUMP-A1/state")

@@ -7,7 +7,9 @@ ONE_THREAD: Final = {"OPENBLAS_NUM_THREADS": "1"}
 
 
 def use_one_thread() -> None:
-    """Have one, unless the environment says otherwise: for processes that start, and for this one if early.
+    """Have one, unless the environment says otherwise. To be called before numpy is imported.
+
+    It holds for this process and for those that it starts.
 
     Matrices are small here, and there is a worker for each core: more threads only wait for each other, which
     takes processor time too.
