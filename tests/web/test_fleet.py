@@ -81,8 +81,10 @@ def test_filters_are_in_the_address_and_survive_a_reload(looked_at: Site) -> Non
     expect(page.page.locator("table.fleet tbody tr")).to_have_count(1)
     assert motors_of(page) == [WELL]
     page.page.get_by_role("link", name="1 not running").click()
+    expect(page.page.locator("table.fleet tbody")).to_contain_text(STANDING)
     assert motors_of(page) == [STANDING]
     page.page.go_back()
+    expect(page.page.locator("table.fleet tbody")).to_contain_text(WELL)
     assert motors_of(page) == [WELL]
     page.page.get_by_role("combobox", name="State").select_option("")
     page.page.get_by_role("combobox", name="Site").select_option("FACTORY_B")
