@@ -9,6 +9,7 @@ from lxml import etree
 from scl.configuration import Address
 from scl.document import IED_NAME, Document
 from scl.errors import SclError
+from scl.multicast_addresses import mac_octets
 from scl.reader import read
 from scl.xml_file import content
 
@@ -155,7 +156,7 @@ def number_goose(document: Document, number: int) -> None:
     Raises
     ------
     SclError
-        The number is not in that range.
+        The number is not in that range, or the file has an address that is none.
     """
     if not 0 <= number < GOOSE_ADDRESSES:
         raise SclError(
@@ -166,8 +167,10 @@ def number_goose(document: Document, number: int) -> None:
             for parameter in document.children(section, "P"):
                 text = content(parameter)
                 if parameter.get("type") == "MAC-Address":
-                    octets = int(text.replace("-", ""), 16) + number
-                    parameter.text = octets.to_bytes(6).hex("-").upper()
+                    octets = mac_octets(text)
+                    if octets is None:
+                        raise document.error(parameter, "an Ethernet address", repr(text))
+                    parameter.text = (int.from_bytes(octets) + number).to_bytes(6).hex("-").upper()
                 elif parameter.get("type") == "APPID":
                     parameter.text = f"{int(text, 16) + number:04X}"
 

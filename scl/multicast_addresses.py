@@ -50,17 +50,34 @@ def _address(document: Document, element: etree._Element) -> MulticastAddress | 
     application_id = _hexadecimal(parameters.get("APPID", "0"))
     vlan_id = _hexadecimal(parameters.get("VLAN-ID", "0"))
     vlan_priority = decimal(parameters.get("VLAN-PRIORITY", "4"))
-    if not MAC.fullmatch(mac) or application_id is None or vlan_id is None or vlan_priority is None:
+    octets = mac_octets(mac)
+    if octets is None or application_id is None or vlan_id is None or vlan_priority is None:
         document.note(element, "no usable multicast address: left out")
         return None
     return MulticastAddress(
-        mac=bytes.fromhex(re.sub("[-:]", "", mac)),
+        mac=octets,
         application_id=application_id,
         vlan_id=vlan_id & 0xFFF,
         vlan_priority=vlan_priority & 7,
         minimum_time_ms=_milliseconds(document, element, "MinTime"),
         maximum_time_ms=_milliseconds(document, element, "MaxTime"),
     )
+
+
+def mac_octets(text: str) -> bytes | None:
+    """Read an Ethernet address.
+
+    Parameters
+    ----------
+    text : str
+        Six octets in hexadecimal digits, with hyphens, colons or nothing between.
+
+    Returns
+    -------
+    bytes or None
+        The octets; None where the text is no address.
+    """
+    return bytes.fromhex(re.sub("[-:]", "", text)) if MAC.fullmatch(text) else None
 
 
 def _hexadecimal(text: str) -> int | None:

@@ -283,15 +283,14 @@ class _Reader:
         self._connection.lib.MmsConnection_fileReadAsync(
             mms, invoke_id, error, self._file, self._async_handler, None
         )
+        more = False
         if not error.value:
             ticked.tick_until(lambda: bool(self._answers), self._connection.request_timeout_s + _MARGIN_S)
             if not self._answers:
                 error.value = _CONNECTION_LOST if ticked.has_closed() else _NO_ANSWER
                 return False
+            ((error.value, more),) = self._answers
         self._connection.release_callback(self._async_handler)
-        if error.value:
-            return False
-        ((error.value, more),) = self._answers
         return more
 
     def _receive(self, _parameter: int | None, _handle: int, buffer: object, size: int) -> None:
@@ -300,9 +299,9 @@ class _Reader:
     def _receive_answer(
         self,
         _invoke_id: int,
-        _parameter: int | None,
+        parameter: int | None,
         error: int,
-        _handle: int,
+        handle: int,
         buffer: object,
         size: int,
         more: bool,
@@ -310,7 +309,7 @@ class _Reader:
         answer = _NO_ANSWER, False
         try:
             if not error and size:
-                self._parts.append(ctypes.string_at(buffer, size))  # type: ignore[arg-type]
+                self._receive(parameter, handle, buffer, size)
             answer = error, more
         finally:
             self._answers.append(answer)  # in any case: the library calls once

@@ -5,7 +5,10 @@ from pathlib import Path
 import pytest
 
 import scl
-from scl import Address, SclError
+from scl import SEL710_ICD, Address, SclError
+from scl.document import Document
+from scl.goose_blocks import goose_blocks
+from scl.instantiation import number_goose, write
 from tests.scl.documents import COMMUNICATION, scl_text, write_scl
 
 
@@ -79,3 +82,26 @@ def test_an_ied_off_every_subnetwork_has_no_address_to_change(tmp_path: Path) ->
     original = write_scl(tmp_path / "relay.icd", scl_text(communication=COMMUNICATION.replace("R1", "R5")))
     with pytest.raises(SclError, match='a ConnectedAP with iedName="R2"'):
         scl.instantiate(original, tmp_path / "copy.cid", "R2", Address("10.0.0.8"))
+
+
+def test_every_relay_has_goose_addresses_of_its_own(tmp_path: Path) -> None:
+    addresses = []
+    for number in (0, 300):
+        relay = Document(SEL710_ICD)
+        number_goose(relay, number)
+        write(relay, tmp_path / "relay.icd")
+        (block,) = goose_blocks(scl.read(tmp_path / "relay.icd").ieds[0])
+        assert block.control.address is not None
+        addresses.append((block.control.address.mac.hex(), block.control.address.application_id))
+    assert addresses == [("010ccd010000", 1), ("010ccd01012c", 301)]
+    with pytest.raises(SclError, match="a relay's number from 0 to 511"):
+        number_goose(Document(SEL710_ICD), 512)
+
+
+def test_a_goose_address_that_is_none_is_named() -> None:
+    relay = Document(SEL710_ICD)
+    for parameter in relay.descendants(relay.root, "P"):
+        if parameter.get("type") == "MAC-Address":
+            parameter.text = "somewhere"
+    with pytest.raises(SclError, match=r"an Ethernet address.*somewhere"):
+        number_goose(relay, 1)

@@ -1,8 +1,9 @@
 """What signals do in the database."""
 
 from service.alarms.kinds import AlarmKind
-from service.gateways.goose.gateway import PendingChanges, SignalWriter
+from service.gateways.goose.gateway import SignalWriter
 from service.gateways.goose.listener import SignalChange
+from service.gateways.goose.receiver import PendingChanges
 from service.gateways.goose.signals import Meaning, Signal
 from service.storage import Repository
 from testing.service.plants import NOW_NS
