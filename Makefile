@@ -11,6 +11,8 @@ STAMP := .venv/.installed
 WARM := .venv/.compiled
 # Matrices are small here: threads of the linear algebra library only take cores from the tests' own processes.
 export OPENBLAS_NUM_THREADS ?= 1
+# Pages with parts that `make docs` writes from the code.
+MADE_PAGES := $(foreach page,architecture command alarm audit role,tests/docs/test_$(page)_page.py)
 # docker compose where its engine answers, else nothing; COMPOSE="podman-compose" make compose-test: another one
 COMPOSE ?= $(shell docker compose version >/dev/null 2>&1 && docker info >/dev/null 2>&1 && echo docker compose)
 
@@ -79,6 +81,7 @@ lint: install
 	$(BIN)/lint-imports
 	$(BIN)/check-jsonschema --builtin-schema vendor.compose-spec docker-compose.yml examples/several-hosts.yml
 	$(BIN)/check-jsonschema --builtin-schema vendor.github-workflows .github/workflows/ci.yml
+	$(BIN)/python -m pytest -q $(MADE_PAGES)
 
 # What pages have from the code: the drawings of the architecture, the commands and their options.
 docs: install
