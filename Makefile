@@ -11,6 +11,8 @@ STAMP := .venv/.installed
 WARM := .venv/.compiled
 # Matrices are small here: threads of the linear algebra library only take cores from the tests' own processes.
 export OPENBLAS_NUM_THREADS ?= 1
+# Tests start thousands of processes: none of them is to compile our modules anew, which some images ask for.
+export PYTHONDONTWRITEBYTECODE :=
 # Pages with parts that `make docs` writes from the code.
 MADE_PAGES := $(foreach page,architecture command alarm audit role,tests/docs/test_$(page)_page.py)
 # docker compose where its engine answers, else nothing; COMPOSE="podman-compose" make compose-test: another one
