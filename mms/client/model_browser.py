@@ -4,7 +4,8 @@ The names of a logical device, of its variables and of its data sets, are listed
 (ISO 9506-2, GetNameList), all of them in parts. One device that a relay cannot list leaves the others.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from typing import TypeAlias
 
 from mms.binding.linked_lists import take_names
 from mms.client.connection import Connection, ServiceFunction
@@ -14,6 +15,9 @@ from mms.references import logical_device, object_reference
 _BUFFERED, _UNBUFFERED = "BR", "RP"
 _NO_DATA = frozenset({"BR", "RP", "GO", "LG", "MS", "US"})
 """Functional constraints of control blocks, which are no data objects."""
+
+_Nodes: TypeAlias = dict[str, dict[str, dict[str, None]]]
+"""Logical nodes of a device: of each its functional constraints, of those the names right below, in order."""
 
 
 class ModelBrowser:
@@ -28,7 +32,7 @@ class ModelBrowser:
     def __init__(self, connection: Connection) -> None:
         self._connection = connection
         self._devices = connection.first_names
-        self._variables: dict[str, list[str]] = {}
+        self._nodes: dict[str, _Nodes] = {}
         self._data_sets: dict[str, list[str]] = {}
 
     def logical_devices(self) -> list[str]:
@@ -80,7 +84,7 @@ class ModelBrowser:
         ----------
         IEC 61850-7-2, GetLogicalDeviceDirectory.
         """
-        return list(dict.fromkeys(name.partition("$")[0] for name in self._variables_of(device)))
+        return list(self._nodes_of(device))
 
     def data_objects(self, node: str) -> list[str]:
         """List the data objects of a logical node.
@@ -199,25 +203,40 @@ class ModelBrowser:
     def _names_below(self, node: str, wanted: Callable[[str], bool]) -> list[str]:
         """Return the names of data objects or control blocks of a node, by their functional constraint."""
         device, _, name = object_reference(node).decode("ascii").partition("/")
-        found: dict[str, None] = {}
-        for variable in self._variables_of(device):
-            parts = variable.split("$", 3)
-            if len(parts) > 2 and parts[0] == name and wanted(parts[1]):
-                found[parts[2]] = None
-        return list(found)
+        constraints = self._nodes_of(device).get(name, {})
+        return list(
+            dict.fromkeys(
+                below for constraint, names in constraints.items() if wanted(constraint) for below in names
+            )
+        )
 
-    def _variables_of(self, device: str) -> list[str]:
-        if device not in self._variables:
-            self._variables[device] = self._names(
+    def _nodes_of(self, device: str) -> "_Nodes":
+        if device not in self._nodes:
+            variables = self._names(
                 f"list logical nodes of {device}",
                 self._connection.lib.MmsConnection_getDomainVariableNames,
                 logical_device(device),
                 longest_s=self._connection.limits.names_s,
             )
-        return self._variables[device]
+            self._nodes[device] = _nodes(variables)
+        return self._nodes[device]
 
     def _names(
         self, operation: str, function: ServiceFunction, *domain: bytes, longest_s: float
     ) -> list[str]:
         names = self._connection.request(operation, function, *domain, longest_s=longest_s)
         return take_names(self._connection.lib, names)
+
+
+def _nodes(variables: Iterable[str]) -> _Nodes:
+    """Sort the variables of a device, LN$FC$DO$..., by node and functional constraint.
+
+    A relay has thousands of variables: they are walked through once, and not kept.
+    """
+    nodes: _Nodes = {}
+    for variable in variables:
+        node, *below = variable.split("$", 3)
+        constraints = nodes.setdefault(node, {})
+        if len(below) > 1:
+            constraints.setdefault(below[0], {})[below[1]] = None
+    return nodes

@@ -75,11 +75,12 @@ def main() -> None:
     """Run the gateway that the command line names until the service is gone."""
     kind = sys.argv[1]
     run = KINDS[kind]()
-    settings, stop = begin_child(f"gateway {kind}", hears_raw_frames=kind in RAW_FRAMES)
+    child = begin_child(f"gateway {kind}", hears_raw_frames=kind in RAW_FRAMES)
+    settings = child.settings
     with _private_output() as output:
         repository = Repository(connect(settings.database_url, limits=limits_of(settings)))
         try:
-            run(GatewayContext(settings, repository, stop, ProblemTeller(output)))
+            run(GatewayContext(settings, repository, child.parent_gone, ProblemTeller(output)))
         except Exception:  # the service starts it again
             log.exception("the gateway failed")
             # Python would wait for the thread that reads the service's pipe, and abort.

@@ -1,10 +1,11 @@
 """Keep one process of the service running. A crash in it costs a restart, not the service."""
 
+import os
 import signal
 import subprocess
 import time
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from threading import Event, Lock, Thread
 from typing import IO
@@ -49,7 +50,8 @@ class SupervisedProcess:
     """Start a child process, and start it again when it ends.
 
     The child reads its settings from its standard input and ends when that closes: it cannot outlive this
-    process, however this process dies, and no setting appears in a command line or an environment.
+    process, however this process dies, and no setting appears in a command line or an environment. What else
+    it needs is in a file without a name that it inherits: a pipe would have to be read before it takes more.
     service.supervision.child is its half.
     """
 
@@ -59,6 +61,7 @@ class SupervisedProcess:
         command: tuple[str, ...],
         settings: Settings,
         *,
+        handed: bytes = b"",
         policy: RestartPolicy = RESTART_POLICY,
         on_exit: Callable[[int | None], None] = _ignore,
         on_line: Callable[[bytes], None] | None = None,
@@ -67,6 +70,8 @@ class SupervisedProcess:
 
         name: what people call it, with an article.
 
+        handed: what each child gets besides its settings, of any size.
+
         on_exit: called after each end of the process with its exit code; None where it did not start.
 
         on_line: called with each line of the child's standard output; None where nothing is heard of that.
@@ -74,6 +79,7 @@ class SupervisedProcess:
         self._name = name
         self._command = command
         self._settings = settings
+        self._handed = handed
         self._policy = policy
         self._on_exit = on_exit
         self._on_line = on_line
@@ -145,15 +151,17 @@ class SupervisedProcess:
         with self._lock:
             if self._stopping.is_set():
                 return None
-            with held_back(signal.SIGINT, signal.SIGTERM):  # until the process ignores them
-                child = self._child = subprocess.Popen(  # noqa: S603 - our own module
-                    self._command,
-                    stdin=subprocess.PIPE,
-                    stdout=subprocess.DEVNULL if self._on_line is None else subprocess.PIPE,
-                    pipesize=PIPE_BYTES,
-                )
-            # The settings are sent before anybody may close that pipe. They fit into it, so this never waits.
-            _send_settings(child, self._settings)
+            with _held(self._handed) as inherited:
+                with held_back(signal.SIGINT, signal.SIGTERM):  # until the process ignores them
+                    child = self._child = subprocess.Popen(  # noqa: S603 - our own module
+                        self._command,
+                        stdin=subprocess.PIPE,
+                        stdout=subprocess.DEVNULL if self._on_line is None else subprocess.PIPE,
+                        pipesize=PIPE_BYTES,
+                        pass_fds=inherited,
+                    )
+                # This is sent before anybody may close that pipe. It fits into it, so this never waits.
+                _send_settings(child, self._settings, inherited)
         if child.stdout is not None:
             self._hear(child.stdout)
         exit_code = child.wait()
@@ -172,12 +180,25 @@ class SupervisedProcess:
                     log.exception("what a process says was not understood", process=self._name)
 
 
-def _send_settings(child: "subprocess.Popen[bytes]", settings: Settings) -> None:
-    """Write the settings to the input of a child as one line."""
+@contextmanager
+def _held(content: bytes) -> Iterator[tuple[int, ...]]:
+    """Hold the content in a file of memory without a name, and yield its descriptor; none without content."""
+    if not content:
+        yield ()
+        return
+    with os.fdopen(os.memfd_create("handed over"), "wb") as file:
+        file.write(content)
+        file.flush()
+        yield (file.fileno(),)
+
+
+def _send_settings(child: "subprocess.Popen[bytes]", settings: Settings, inherited: tuple[int, ...]) -> None:
+    """Write two lines to the input of a child: the settings, and the descriptor that it inherits, if any."""
     assert child.stdin is not None  # noqa: S101 - it was opened as a pipe
     # A child that is dead already reports itself by its exit code.
     with suppress(BrokenPipeError):
         child.stdin.write(settings.model_dump_json().encode() + b"\n")
+        child.stdin.write(b"".join(b"%d" % descriptor for descriptor in inherited) + b"\n")
         child.stdin.flush()
 
 

@@ -1,7 +1,8 @@
 """Run a gateway as a process of its own, with a session for every relay it holds a lease of.
 
-It is started by the service, which hands it the settings as one line of JSON on standard input and keeps that
-pipe open. When the pipe closes the service is gone, however it went, and the gateway ends with it.
+It is started by the service, which hands it the plant, gives it the settings as a line of JSON on standard
+input, and keeps that pipe open. When the pipe closes the service is gone, however it went, and the gateway
+ends with it.
 """
 
 import os
@@ -16,7 +17,8 @@ from mms import filter_tls_log_from_stderr
 from service.collector.gateway.gateway import Gateway, GatewayIdentity
 from service.collector.session.visit_marks import VisitMarks
 from service.configuration.settings import Settings
-from service.plant import read_plant
+from service.plant import Plant
+from service.plant.handover import plant_from_bytes
 from service.process.installation import installation_id
 from service.process.open_files import allow_open_files
 from service.process.single_instance import exclusive
@@ -41,21 +43,22 @@ def gateway_id(settings: Settings, number: int) -> str:
 
 def main(settings_pipe: BinaryIO = sys.stdin.buffer) -> None:
     """Read the settings, collect until the pipe closes, end the process. The argument is its number."""
-    settings, service_gone = begin_child("collector", settings_pipe)
+    child = begin_child("collector", settings_pipe)
+    settings = child.settings
     number = int(sys.argv[1])
     if any(access.tls is not None for access in settings.relays.values()):
         filter_tls_log_from_stderr()
     allow_open_files(OPEN_FILES)
     # The same gateway of a killed service may be about to end: holding its lock, we know that it is dead.
     with exclusive(settings.data_directory / f"gateway-{number}.lock", wait=True):
-        left_over = _collect(settings, number, service_gone)
+        left_over = _collect(settings, plant_from_bytes(child.handed), number, child.parent_gone)
         if left_over:
             # A thread inside the C library must neither keep the process nor see it torn down around itself.
             log.warning("ended with requests under way", sessions=left_over)
             os._exit(0)
 
 
-def _collect(settings: Settings, number: int, stop: Event) -> list[str]:
+def _collect(settings: Settings, plant: Plant, number: int, stop: Event) -> list[str]:
     """Visit relays until `stop` is set. Returns the names of the threads that did not end in time."""
     name = gateway_id(settings, number)
     store = open_store(settings, name.replace("/", "-"))
@@ -64,7 +67,7 @@ def _collect(settings: Settings, number: int, stop: Event) -> list[str]:
     marks.clear()  # left by a gateway whose service ended with it
     gateway = Gateway(
         GatewayIdentity(name, socket.gethostname(), os.getpid()),
-        read_plant(settings),
+        plant,
         Repository(connect(settings.database_url, limits=limits_of(settings))),
         store,
         settings,

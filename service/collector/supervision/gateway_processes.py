@@ -13,6 +13,7 @@ from service.collector.session.visit_marks import VisitMarks
 from service.collector.supervision.crash_blame import blame_after_end
 from service.configuration.settings import Settings
 from service.plant import Plant
+from service.plant.handover import plant_to_bytes
 from service.storage import Repository, StorageError
 from service.supervision.supervised_process import SupervisedProcess
 from service.timing.database_silence import database_trouble
@@ -33,6 +34,7 @@ class GatewayProcesses:
     def __init__(self, settings: Settings, plant: Plant, repository: Repository) -> None:
         self._settings = settings
         self._repository = repository
+        handed = plant_to_bytes(plant)
         gateways = -(-len(plant.relays) // settings.relays_per_gateway)
         self._ids = [gateway_id(settings, number) for number in range(gateways)]
         self._supervisors = [
@@ -40,6 +42,7 @@ class GatewayProcesses:
                 COLLECTOR,
                 (*COMMAND, str(number)),
                 settings,
+                handed=handed,
                 on_exit=partial(self._handle_exit, number, name),
             )
             for number, name in enumerate(self._ids)

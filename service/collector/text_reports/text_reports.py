@@ -42,8 +42,10 @@ from service.storage import Repository
 log = structlog.get_logger(__name__)
 
 USUAL: Final = "REPORTS"
+CONNECTING_S: Final = 60.0
+"""No look comes before: the links of other relays come up meanwhile."""
 FIRST_LOOK_S: Final = 300.0
-"""The first look comes within this time, at another moment for each relay."""
+"""The first look comes within this time after that, at another moment for each relay."""
 DAILY: Final = frozenset({ReportKind.LOAD_PROFILE, ReportKind.MOTOR_STATISTICS})
 """Reports that tell of days: the load profile is long, and its rows wait for weeks."""
 MOST_PERIODS: Final = 64
@@ -97,8 +99,8 @@ class TextReports:
         self._power_unit = overrides.report_power_unit
         self._allowance = allowance
         self._on_bytes = on_bytes
-        spread_s = min(FIRST_LOOK_S, period_s)
-        self._next_look_s = time.monotonic() + random.uniform(0.0, spread_s)  # noqa: S311 - no secret
+        spread_s = random.uniform(0.0, min(FIRST_LOOK_S, period_s))  # noqa: S311 - no secret
+        self._next_look_s = time.monotonic() + min(CONNECTING_S, period_s) + spread_s
         self._periods = 1
         self._is_under_way = False
         self._next_s: dict[ReportKind, float] = {}

@@ -1,5 +1,6 @@
 """A process of the service is kept running, and never outlives its parent."""
 
+import hashlib
 import os
 import signal
 import subprocess
@@ -57,12 +58,12 @@ def test_a_stop_just_after_the_start_waits_for_the_settings(
     stopping = Thread(target=supervised.stop)
     send_settings = supervised_process._send_settings
 
-    def slowly(child: "subprocess.Popen[bytes]", settings: Settings) -> None:
+    def slowly(child: "subprocess.Popen[bytes]", settings: Settings, inherited: tuple[int, ...]) -> None:
         stopping.start()
         assert child.stdin is not None
         stdin = child.stdin
         assert not eventually(lambda: stdin.closed, within_s=0.2)
-        send_settings(child, settings)
+        send_settings(child, settings, inherited)
 
     monkeypatch.setattr(supervised_process, "_send_settings", slowly)
     supervised.start()
@@ -189,9 +190,9 @@ def test_what_a_process_says_is_heard_line_by_line(tmp_path: Path) -> None:
 def test_a_child_reads_its_settings_and_sees_its_parent_go(tmp_path: Path) -> None:
     script = (
         "from service.supervision.child import begin_child;"
-        "settings, gone = begin_child('child');"
-        "print(settings.data_directory, gone.is_set(), flush=True);"
-        "gone.wait();"
+        "child = begin_child('child');"
+        "print(child.settings.data_directory, child.parent_gone.is_set(), child.handed, flush=True);"
+        "child.parent_gone.wait();"
         "print('gone', flush=True)"
     )
     heard: list[bytes] = []
@@ -201,4 +202,27 @@ def test_a_child_reads_its_settings_and_sees_its_parent_go(tmp_path: Path) -> No
     supervised.start()
     assert eventually(lambda: bool(heard), within_s=60)
     supervised.stop()
-    assert heard == [f"{tmp_path} False\n".encode(), b"gone\n"]
+    assert heard == [f"{tmp_path} False b''\n".encode(), b"gone\n"]
+
+
+def test_every_child_is_handed_what_no_pipe_holds(tmp_path: Path) -> None:
+    script = (
+        "import hashlib;"
+        "from service.supervision.child import begin_child;"
+        "print(hashlib.sha256(begin_child('child').handed).hexdigest(), flush=True)"
+    )
+    handed = os.urandom(3 * supervised_process.PIPE_BYTES)
+    heard: list[bytes] = []
+    supervised = SupervisedProcess(
+        "the child",
+        (sys.executable, "-c", script),
+        Settings(data_directory=tmp_path),
+        handed=handed,
+        on_line=heard.append,
+    )
+    open_before = len(list(Path("/proc/self/fd").iterdir()))
+    supervised.start()
+    assert eventually(lambda: len(heard) >= 2, within_s=60)
+    supervised.stop()
+    assert set(heard) == {f"{hashlib.sha256(handed).hexdigest()}\n".encode()}
+    assert len(list(Path("/proc/self/fd").iterdir())) == open_before

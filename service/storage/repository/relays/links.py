@@ -1,7 +1,7 @@
 """The relays' links: how they are, every change with its reason, and what went over them."""
 
 import uuid
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import asdict, fields
 
 from sqlalchemy import bindparam, case, delete, func, select, update
@@ -49,10 +49,7 @@ class LinkRows(Sessions):
         if not notes:
             return
         with self._write() as session:
-            for note in notes:
-                if note.state is not None:
-                    _set_state(session, note, note.state)
-            session.flush()
+            _set_states(session, [note for note in notes if note.state is not None])
             answered = [{"of": note.ied, "at": note.now_ns} for note in notes if note.is_answer]
             if answered:
                 session.connection().execute(_ANSWERED, answered)
@@ -77,8 +74,7 @@ class LinkRows(Sessions):
                 IedRow.link_state.not_in((LinkState.UNKNOWN, LinkState.QUARANTINED)),
                 IedRow.name.not_in(select(LeaseRow.ied)),
             )
-            for row in session.scalars(known).all():
-                change_link(session, row, LinkState.UNKNOWN, reason, now_ns)
+            change_links(session, session.scalars(known).all(), LinkState.UNKNOWN, reason, now_ns)
 
     def link_changes(self, relay: str, *, limit: int, after: Cursor | None = None) -> Page[LinkChange]:
         """Return the changes of a relay's link, latest first. Raises NotFoundError."""
@@ -107,17 +103,35 @@ class LinkRows(Sessions):
             return tuple(LinkFigures(*row) for row in session.execute(query))
 
 
-def _set_state(session: Session, note: LinkNote, state: LinkState) -> None:
-    row = found(session, IedRow, note.ied, "relay", lock=True)
-    if row.link_changed_ns is None or row.link_changed_ns <= note.now_ns:
-        change_link(session, row, state, note.reason, note.now_ns)
-    if session.get(LinkFiguresRow, note.ied) is None:
-        zeros = {field.name: 0 for field in fields(LinkTraffic)}
-        session.add(LinkFiguresRow(ied=note.ied, day=note.day, day_bytes=0, **zeros))
+def _set_states(session: Session, notes: Sequence[LinkNote]) -> None:
+    """Set the states that the notes tell. Hundreds of links may come up at once: a statement serves all."""
+    if not notes:
+        return
+    relays = {note.ied for note in notes}
+    locked = select(IedRow).where(IedRow.name.in_(relays)).order_by(IedRow.name)
+    rows = {row.name: row for row in session.scalars(locked.with_for_update(key_share=True))}
+    with_figures = set(session.scalars(select(LinkFiguresRow.ied).where(LinkFiguresRow.ied.in_(relays))))
+    zeros = {field.name: 0 for field in fields(LinkTraffic)}
+    for note in notes:
+        row = rows.get(note.ied) or found(session, IedRow, note.ied, "relay")
+        if note.state is not None and (row.link_changed_ns is None or row.link_changed_ns <= note.now_ns):
+            _change_link(session, row, note.state, note.reason, note.now_ns)
+        if note.ied not in with_figures:
+            with_figures.add(note.ied)
+            session.add(LinkFiguresRow(ied=note.ied, day=note.day, day_bytes=0, **zeros))
+    _drop_old_changes(session, relays)
 
 
-def change_link(session: Session, row: IedRow, state: LinkState, reason: str | None, now_ns: int) -> None:
-    """Set a link's state, and add it to the history if it is a change."""
+def change_links(
+    session: Session, rows: Sequence[IedRow], state: LinkState, reason: str | None, now_ns: int
+) -> None:
+    """Set the state of links, and add it to the history of those that it changes."""
+    for row in rows:
+        _change_link(session, row, state, reason, now_ns)
+    _drop_old_changes(session, {row.name for row in rows})
+
+
+def _change_link(session: Session, row: IedRow, state: LinkState, reason: str | None, now_ns: int) -> None:
     if row.link_state is state and row.link_reason == reason:
         return
     if row.link_state is not state:
@@ -126,11 +140,22 @@ def change_link(session: Session, row: IedRow, state: LinkState, reason: str | N
     session.add(
         LinkChangeRow(id=str(uuid.uuid4()), ied=row.name, changed_ns=now_ns, state=state, reason=reason)
     )
+
+
+def _drop_old_changes(session: Session, relays: Collection[str]) -> None:
+    """Write what the session holds, and drop the changes beyond MOST_CHANGES of each relay."""
     session.flush()
-    too_old = (
-        select(LinkChangeRow.id)
-        .where(LinkChangeRow.ied == row.name)
-        .order_by(LinkChangeRow.changed_ns.desc(), LinkChangeRow.id.desc())
-        .offset(MOST_CHANGES)
+    crowded = (
+        select(LinkChangeRow.ied)
+        .where(LinkChangeRow.ied.in_(relays))
+        .group_by(LinkChangeRow.ied)
+        .having(func.count() > MOST_CHANGES)
     )
-    session.execute(delete(LinkChangeRow).where(LinkChangeRow.id.in_(session.scalars(too_old).all())))
+    for relay in session.scalars(crowded).all():
+        too_old = (
+            select(LinkChangeRow.id)
+            .where(LinkChangeRow.ied == relay)
+            .order_by(LinkChangeRow.changed_ns.desc(), LinkChangeRow.id.desc())
+            .offset(MOST_CHANGES)
+        )
+        session.execute(delete(LinkChangeRow).where(LinkChangeRow.id.in_(session.scalars(too_old).all())))

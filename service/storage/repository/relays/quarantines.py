@@ -18,7 +18,7 @@ from service.storage.repository.alarms.suppression import (
     unsuppress_those_of_relay,
 )
 from service.storage.repository.audit.entries import note_change
-from service.storage.repository.relays.links import change_link
+from service.storage.repository.relays.links import change_links
 from service.storage.repository.sessions import Sessions, found, record_of
 from service.storage.states import AlarmKind, LinkState
 from service.timing.backoff import Backoff
@@ -61,7 +61,7 @@ class QuarantineRows(Sessions):
                 session.delete(row)
                 session.flush()
             if relay_row.link_state is LinkState.QUARANTINED:
-                change_link(session, relay_row, LinkState.UNKNOWN, RELEASED, now_ns)
+                change_links(session, [relay_row], LinkState.UNKNOWN, RELEASED, now_ns)
             clear_standing(session, relay, AlarmKind.QUARANTINED, now_ns)
             unsuppress_those_of_relay(session, relay, now_ns=now_ns)
 
@@ -93,6 +93,7 @@ def _put(session: Session, relay: str, reason: str, times: int, now_ns: int, pau
     row.until_ns = now_ns + round(pause_s * NANOSECONDS_PER_SECOND)
     if pause_s > 0:
         until = f"{datetime.fromtimestamp(row.until_ns // NANOSECONDS_PER_SECOND, UTC):%Y-%m-%dT%H:%M:%SZ}"
-        change_link(session, relay_row, LinkState.QUARANTINED, f"set aside until {until}: {reason}", now_ns)
+        why = f"set aside until {until}: {reason}"
+        change_links(session, [relay_row], LinkState.QUARANTINED, why, now_ns)
     session.flush()
     return row

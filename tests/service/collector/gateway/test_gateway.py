@@ -30,6 +30,7 @@ from service.configuration.settings import Settings
 from service.demo import MOTORS
 from service.demo.addresses import free_ports
 from service.plant import Plant, read_plant
+from service.plant.handover import plant_to_bytes
 from service.recording_store.folder import FolderStore
 from service.storage import LeaseLostError, Repository, connect
 from service.storage.states import LinkState
@@ -201,7 +202,9 @@ def test_a_gateway_takes_no_more_than_it_may(hall: Hall) -> None:
 @contextmanager
 def supervised(hall: Hall, host: str) -> Iterator[SupervisedProcess]:
     """A gateway process, kept running as the service does it, of a host of its own."""
-    supervisor = SupervisedProcess(COLLECTOR, (*COMMAND, "0"), hall.settings_of(host))
+    supervisor = SupervisedProcess(
+        COLLECTOR, (*COMMAND, "0"), hall.settings_of(host), handed=plant_to_bytes(hall.plant)
+    )
     supervisor.start()
     try:
         yield supervisor
