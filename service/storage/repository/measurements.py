@@ -1,6 +1,7 @@
 """Measured values over time: as sampled for a while, as means of minutes and quarters of an hour later."""
 
 from collections.abc import Iterable
+from functools import cache
 from itertools import pairwise
 from time import monotonic
 from typing import Any
@@ -8,6 +9,8 @@ from typing import Any
 from sqlalchemy import (
     BigInteger,
     ColumnElement,
+    Insert,
+    Integer,
     TableClause,
     bindparam,
     case,
@@ -16,7 +19,6 @@ from sqlalchemy import (
     exists,
     func,
     insert,
-    literal,
     select,
     table,
 )
@@ -179,7 +181,8 @@ def average_until(session: Session, finer: int, step_s: int, *, now_ns: int) -> 
         )
     )
     from_ns = 0 if latest is None else latest + step_s * NANOSECONDS_PER_SECOND
-    insert_means(session, finer, step_s, from_ns, to_ns)
+    if from_ns < to_ns:
+        insert_means(session, finer, step_s, from_ns, to_ns)
 
 
 def insert_means(
@@ -189,34 +192,46 @@ def insert_means(
 
     of_load_profile: a motor; only of its load profile's rows, and only means that are not there.
     """
-    step_ns = step_s * NANOSECONDS_PER_SECOND
+    interval = {"of_step": step_s, "of_step_ns": step_s * NANOSECONDS_PER_SECOND}
+    span = {"finer": finer, "from_ns": from_ns, "to_ns": to_ns}
+    motor = {} if of_load_profile is None else {"of_motor": of_load_profile}
+    statement = _means_inserted(of_load_profile=of_load_profile is not None)
+    session.connection().execute(statement, interval | span | motor)
+
+
+@cache
+def _means_inserted(*, of_load_profile: bool) -> Insert:
+    """Return the statement of `insert_means`. To put it together takes longer than to carry it out."""
+    step_s, step_ns = bindparam("of_step", type_=Integer), bindparam("of_step_ns", type_=BigInteger)
     begin = (MeasurementRow.time_ns - MeasurementRow.time_ns % step_ns).label("begin")
     means = (
         select(
             MeasurementRow.motor,
-            literal(step_s),
+            step_s,
             begin,
             func.sum(MeasurementRow.samples),
             func.max(MeasurementRow.source),
             *(_of_an_interval(quantity) for quantity in MeteredQuantity),
         )
         .where(
-            MeasurementRow.step_s == finer, MeasurementRow.time_ns >= from_ns, MeasurementRow.time_ns < to_ns
+            MeasurementRow.step_s == bindparam("finer"),
+            MeasurementRow.time_ns >= bindparam("from_ns"),
+            MeasurementRow.time_ns < bindparam("to_ns"),
         )
         .group_by(MeasurementRow.motor, begin)
     )
-    if of_load_profile is not None:
+    if of_load_profile:
         mean = aliased(MeasurementRow)
         is_there = exists().where(
             mean.motor == MeasurementRow.motor, mean.step_s == step_s, mean.time_ns == begin.element
         )
         means = means.where(
-            MeasurementRow.motor == of_load_profile,
+            MeasurementRow.motor == bindparam("of_motor"),
             MeasurementRow.source == MeasurementSource.LOAD_PROFILE,
             ~is_there,
         )
     names = ["motor", "step_s", "time_ns", "samples", "source", *MeteredQuantity]
-    session.execute(insert(MeasurementRow).from_select(names, means))
+    return insert(MeasurementRow).from_select(names, means)
 
 
 def _of_an_interval(quantity: MeteredQuantity) -> ColumnElement[Any]:
