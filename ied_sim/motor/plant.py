@@ -348,7 +348,7 @@ class MotorPlant:
         step_rate_hz: float,
     ) -> tuple[Array, Array]:
         """Return line currents, shape (3, samples), and speed from `first_s` on."""
-        needed_hz = max(step_rate_hz, circuit.fastest_rate() / RATE_PER_STEP)
+        needed_hz = max(step_rate_hz, circuit.fastest_rate / RATE_PER_STEP)
         steps_per_sample = max(1, ceil(needed_hz / sample_rate_hz))
         step = 1 / (sample_rate_hz * steps_per_sample)
         half_steps = np.arange(2 * (samples - 1) * steps_per_sample + 1, dtype=np.float64)

@@ -20,6 +20,7 @@ doi:10.1109/TIA.2002.800567, for the split phase.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,7 +36,7 @@ Matrix = NDArray[np.float64]
 _LINE_TO_LINE = np.array([[1.0, -1.0, 0.0], [0.0, 1.0, -1.0], [-1.0, 0.0, 1.0]])
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class WindingCircuit:
     """Loop matrices of one motor: m loops, the stator's first, then the fault's if any, then the rotor's.
 
@@ -73,6 +74,7 @@ class WindingCircuit:
         """Return currents into terminals a, b, c, shape (3, n) [A], from loop currents, shape (n, m) [A]."""
         return self.drive.T @ loop_currents.T
 
+    @cached_property
     def fastest_rate(self) -> float:
         """Return the largest decay rate of the loops with the rotor held still [1/s]."""
         rates = np.linalg.eigvals(np.linalg.solve(self.inductance(0.0), self.resistance))

@@ -5,7 +5,7 @@ less. In each round the pump polls servers for data and serves it. Then it gives
 that server sends its reports.
 
 A server is polled in every round after a request, then the more rarely the longer it is quiet. The interval
-grows to 60 us times the number of servers if it has clients, and to 250 us times that number if it has none;
+grows to 100 us times the number of servers if it has clients, and to 250 us times that number if it has none;
 so long may a client wait to connect. A turn is due at once after an update, 10 ms after a request, then after
 50, 100, 200 ms and so on up to 5 ms times the number of servers (at least 50 ms). Between rounds the pump
 sleeps, the longer the quieter it is, never more than 3 ms. So a request waits a few milliseconds, and a run
@@ -16,8 +16,11 @@ import atexit
 import logging
 import threading
 import time
-from collections.abc import Iterable
+from collections import deque
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import partial
+from heapq import heappop, heappush
 from types import TracebackType
 from typing import Final, Protocol, Self
 
@@ -26,8 +29,10 @@ log: Final = logging.getLogger("mms")
 _SHORTEST_PAUSE_S: Final = 0.00005
 _LONGEST_PAUSE_S: Final = 0.003
 _SHORTEST_POLL_S: Final = 0.001
-_POLL_PER_SERVER_S: Final = 0.00006
+_POLL_PER_SERVER_S: Final = 0.0001
 _POLL_PER_IDLE_SERVER_S: Final = 0.00025
+_TURN_DELAY_AFTER_REQUEST_S: Final = 0.01
+"""A request makes reports only if it enables a block or asks for a general interrogation."""
 _SHORTEST_INTERVAL_S: Final = 0.05
 _INTERVAL_PER_SERVER_S: Final = 0.005
 
@@ -39,9 +44,8 @@ class PumpedServer(Protocol):
     def connections(self) -> int:
         """Number of connected clients."""
 
-    @property
-    def turn_delay_s(self) -> float:
-        """Longest time until the next turn [s]."""
+    def tell_updates(self, updated: Callable[[], None]) -> None:
+        """Call this after each update, on whichever thread made it."""
 
     def listen(self) -> None:
         """Open the port.
@@ -76,10 +80,9 @@ class PumpedServer(Protocol):
 
 @dataclass(slots=True)
 class _Polling:
-    """When one server is polled next [s, monotonic], and how long after the last poll that is [s]."""
+    """How long after the last poll one server is polled next [s]."""
 
     server: PumpedServer
-    due_s: float = 0.0
     interval_s: float = 0.0
     has_no_client: bool = True
 
@@ -104,8 +107,12 @@ class ServerPump:
 
     def __init__(self, servers: Iterable[PumpedServer]) -> None:
         self._servers = tuple(servers)
-        self._polling = [_Polling(server) for server in self._servers]
         self._turns = [_Turn(server) for server in self._servers]
+        # By the time when they are due, then by their place: a round looks at those alone that are.
+        self._due_polls = [(0.0, place, _Polling(server)) for place, server in enumerate(self._servers)]
+        self._due_turns = [(0.0, place) for place in range(len(self._servers))]
+        self._updated: deque[int] = deque()
+        """Places of the servers that have been updated; other threads add to it."""
         self._longest_interval_s = max(_SHORTEST_INTERVAL_S, _INTERVAL_PER_SERVER_S * len(self._servers))
         self._stopping = threading.Event()
         self._thread = threading.Thread(target=self._run, name="mms-pump", daemon=True)
@@ -124,7 +131,8 @@ class ServerPump:
         if self._started:
             raise RuntimeError("the pump has been started before")
         try:
-            for server in self._servers:
+            for place, server in enumerate(self._servers):
+                server.tell_updates(partial(self._updated.append, place))
                 server.listen()
         except BaseException:
             for server in self._servers:
@@ -166,20 +174,31 @@ class ServerPump:
         """Serve what has come to the servers that are due; return True if anything had."""
         busy = False
         now_s = time.monotonic()
-        for polling in self._polling:
-            if polling.due_s > now_s:
-                continue
+        polled = []
+        while self._due_polls and self._due_polls[0][0] <= now_s:
+            _, place, polling = heappop(self._due_polls)
             if polling.server.serve_pending():
                 busy = True
-                polling.due_s = polling.interval_s = 0.0
+                polling.interval_s = 0.0
                 # Clients come and go only where something came.
                 polling.has_no_client = polling.server.connections == 0
+                self._hasten_turn(place, now_s + _TURN_DELAY_AFTER_REQUEST_S)
             else:
                 each_s = _POLL_PER_IDLE_SERVER_S if polling.has_no_client else _POLL_PER_SERVER_S
-                longest_s = len(self._polling) * each_s
+                longest_s = len(self._servers) * each_s
                 polling.interval_s = min(max(2 * polling.interval_s, _SHORTEST_POLL_S), longest_s)
-                polling.due_s = now_s + polling.interval_s
+            polled.append((now_s + polling.interval_s, place, polling))
+        for each in polled:
+            heappush(self._due_polls, each)
         return busy
+
+    def _hasten_turn(self, place: int, due_s: float) -> None:
+        """Let a server's next turn be due at this time at the latest, and the ones after it soon."""
+        turn = self._turns[place]
+        turn.interval_s = _SHORTEST_INTERVAL_S
+        if due_s < turn.due_s:
+            turn.due_s = due_s
+            heappush(self._due_turns, (due_s, place))
 
     def _give_turns(self) -> bool:
         """Give turns to due servers, the longest overdue first, until one has waited.
@@ -187,22 +206,23 @@ class ServerPump:
         It returns True if more are due.
         """
         now_s = time.monotonic()
-        due = []
-        for turn in self._turns:
-            turn_delay_s = turn.server.turn_delay_s
-            if turn_delay_s < _SHORTEST_INTERVAL_S:
-                turn.due_s = min(turn.due_s, now_s + turn_delay_s)
-                turn.interval_s = _SHORTEST_INTERVAL_S
-            if turn.due_s <= now_s:
-                due.append(turn)
-        due.sort(key=lambda turn: turn.due_s)
-        for place, turn in enumerate(due, 1):
+        while self._updated:
+            self._hasten_turn(self._updated.popleft(), now_s)
+        while self._is_turn_due(now_s):
+            due_s, place = heappop(self._due_turns)
+            turn = self._turns[place]
+            if due_s != turn.due_s:
+                continue  # it came earlier than this
             waited = turn.server.take_turn()
             turn.due_s = now_s + turn.interval_s
+            heappush(self._due_turns, (turn.due_s, place))
             turn.interval_s = min(2 * turn.interval_s, self._longest_interval_s)
             if waited:
-                return place < len(due)
+                return self._is_turn_due(now_s)
         return False
+
+    def _is_turn_due(self, now_s: float) -> bool:
+        return bool(self._due_turns) and self._due_turns[0][0] <= now_s
 
 
 _running: Final[set[ServerPump]] = set()

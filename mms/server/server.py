@@ -3,9 +3,8 @@
 The library serves without threads of its own; a ServerPump drives any number of servers from one thread.
 """
 
-import math
 import threading
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import nullcontext
 from enum import Enum
 from pathlib import Path
@@ -26,9 +25,6 @@ from mms.server.pump import ServerPump
 from mms.server.read_access import ReadHandler
 from mms.server.services import MOST_CONNECTIONS, Identity, Services, create_server, name_server
 from mms.values import Quality, Value
-
-_TURN_DELAY_AFTER_REQUEST_S: Final = 0.01
-"""A request makes reports only if it enables a block or asks for a general interrogation."""
 
 
 class _State(Enum):
@@ -108,7 +104,7 @@ class Server:
         self._lib: Final = library()
         self._lock = threading.RLock()
         self._state = _State.CREATED
-        self._turn_delay_s = 0.0
+        self._tell_update: Callable[[], None] | None = None
         self._tls_handshake_timeout_s = tls_handshake_timeout_s
         self._pump: ServerPump | None = None
         authenticate = make_authenticator(self._lib, passwords)
@@ -213,7 +209,7 @@ class Server:
             self._require_alive("update")
             self._attributes.apply_posted_or_log()
             self._attributes.update(values)
-            self._turn_delay_s = 0.0
+            self._note_update()
 
     def post(self, values: Mapping[str, Value | Quality]) -> None:
         """Set several attributes as one change, soon: a client's request meanwhile may still miss it.
@@ -229,7 +225,7 @@ class Server:
             New values by reference, not changed by the caller afterwards.
         """
         self._attributes.post(values)
-        self._turn_delay_s = 0.0
+        self._note_update()
 
     def apply_posted(self) -> None:
         """Make the posted changes now.
@@ -340,7 +336,6 @@ class Server:
             self._attributes.apply_posted_or_log()
             self._process_incoming()
             self._lib.IedServer_performPeriodicTasks(self._server)
-            self._turn_delay_s = min(self._turn_delay_s, _TURN_DELAY_AFTER_REQUEST_S)
             return True
 
     def take_turn(self) -> bool:
@@ -354,7 +349,6 @@ class Server:
             True if that waited a millisecond.
         """
         with self._lock:
-            self._turn_delay_s = math.inf
             if self._state is not _State.RUNNING:
                 return False
             self._attributes.apply_posted_or_log()
@@ -372,13 +366,19 @@ class Server:
         with nullcontext() if self._tls is None else end_connections_after(own, limit_s):
             self._lib.IedServer_processIncomingData(self._server)
 
-    @property
-    def turn_delay_s(self) -> float:
-        """Longest time until the next turn [s]: none after an update, infinite if nothing happened.
+    def tell_updates(self, updated: Callable[[], None]) -> None:
+        """Call this after each update, on whichever thread made it. The pump wants to know.
 
-        The pump reads this.
+        Parameters
+        ----------
+        updated : callable
+            Must neither wait nor fail.
         """
-        return self._turn_delay_s
+        self._tell_update = updated
+
+    def _note_update(self) -> None:
+        if self._tell_update is not None:
+            self._tell_update()
 
     def close(self) -> None:
         """Free the server once no pump drives it: stop, destroy the server, then its model."""
