@@ -106,7 +106,10 @@ class Simulator:
                     relay.server.start()
         except ServerStartFailed as error:
             raise self._start_error(error.host) from error
-        taken = self._proxies.start()
+        servers = {
+            Address(relay.server.address, relay.server.port): relay.server for relay in self.relays.values()
+        }
+        taken = self._proxies.start(lambda inside: self._pump.expect(servers[inside]))
         if taken is not None:
             self.stop()
             raise self._start_error(str(taken))

@@ -7,6 +7,7 @@ from asyncio import StreamReader, StreamWriter
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
+from functools import partial
 
 from ied_sim.front.reserved_address import ReservedAddress
 from ied_sim.front.rewriting import Rewriter
@@ -53,6 +54,8 @@ class RelayProxy:
         sessions: int,
         overflow_server: OpenOverflowServer,
     ) -> None:
+        self.passed_on: Callable[[], None] | None = None
+        """Called after something was sent to the server."""
         self.outside = outside
         self._inside = inside
         self._most = sessions
@@ -114,6 +117,7 @@ class RelayProxy:
             from_server, to_server = await asyncio.open_connection(address.host, address.port)
         except OSError:
             return
+        self._tell()
         session = _Session(
             writer, to_server, Rewriter(self._files, self._misbehaviour_state, self._report_ids)
         )
@@ -126,6 +130,7 @@ class RelayProxy:
                 task.cancel()
             await asyncio.gather(*tasks, return_exceptions=True)
             to_server.close()
+            self._tell()
 
     async def _requests(self, reader: StreamReader, session: _Session) -> None:
         with suppress(asyncio.IncompleteReadError, ConnectionError):
@@ -143,6 +148,11 @@ class RelayProxy:
                 else:
                     session.server.write(b"".join(message.units))
                 await session.server.drain()
+                self._tell()
+
+    def _tell(self) -> None:
+        if self.passed_on is not None:
+            self.passed_on()
 
     async def _responses(self, reader: StreamReader, session: _Session) -> None:
         with suppress(asyncio.IncompleteReadError, ConnectionError):
@@ -227,10 +237,15 @@ class RelayProxies:
         if inside is not None:
             inside.release()
 
-    def start(self) -> Address | None:
-        """Open all proxies; return None, or the address of the first that cannot be had."""
+    def start(self, passed_on: Callable[[Address], None]) -> Address | None:
+        """Open all proxies; return None, or the address of the first that cannot be had.
+
+        passed_on: called with the address of a server to which something was sent.
+        """
         if not self._proxies:
             return None
+        for proxy in self._proxies:
+            proxy.passed_on = partial(passed_on, self._reserved[proxy.outside].address)
         loop = asyncio.new_event_loop()
         thread = threading.Thread(target=loop.run_forever, name="front", daemon=True)
         self._running = (loop, thread)

@@ -227,6 +227,9 @@ class RelayServer:
 
     def _make_texts(self, request: FileRequest) -> None:
         """Write the texts that a client lists or opens, with their present content."""
+        is_text = any(path.endswith(request.path.name) for path in self._texts)
+        if request.operation is not FileOperation.LIST and not is_text:
+            return
         asked = request.path.relative_to(self._root.resolve()).as_posix()
         for path, make in self._texts.items():
             listed = request.operation is FileOperation.LIST and asked in (".", Path(path).parent.as_posix())

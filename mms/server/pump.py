@@ -6,10 +6,11 @@ that server sends its reports.
 
 A server is polled in every round after a request, then the more rarely the longer it is quiet. The interval
 grows to 100 us times the number of servers if it has clients, and to 250 us times that number if it has none;
-so long may a client wait to connect. A turn is due at once after an update, 10 ms after a request, then after
-50, 100, 200 ms and so on up to 5 ms times the number of servers (at least 50 ms). Between rounds the pump
-sleeps, the longer the quieter it is, never more than 3 ms. So a request waits a few milliseconds, and a run
-of requests (a file transfer) does not wait at all.
+so long may a client wait to connect. Where somebody tells when a client has sent something (`expect`), the
+next round polls, and the interval grows to 1 ms times the number. A turn is due at once after an update,
+10 ms after a request, then after 50, 100, 200 ms and so on up to 5 ms times the number of servers (at least
+50 ms). Between rounds the pump sleeps, the longer the quieter it is, never more than 3 ms. So a request waits
+a few milliseconds, and a run of requests (a file transfer) does not wait at all.
 """
 
 import atexit
@@ -31,6 +32,7 @@ _LONGEST_PAUSE_S: Final = 0.003
 _SHORTEST_POLL_S: Final = 0.001
 _POLL_PER_SERVER_S: Final = 0.0001
 _POLL_PER_IDLE_SERVER_S: Final = 0.00025
+_POLL_PER_EXPECTED_SERVER_S: Final = 0.001
 _TURN_DELAY_AFTER_REQUEST_S: Final = 0.01
 """A request makes reports only if it enables a block or asks for a general interrogation."""
 _SHORTEST_INTERVAL_S: Final = 0.05
@@ -80,11 +82,20 @@ class PumpedServer(Protocol):
 
 @dataclass(slots=True)
 class _Polling:
-    """How long after the last poll one server is polled next [s]."""
+    """When one server is polled next [s, monotonic], and how long after the last poll that is [s]."""
 
     server: PumpedServer
+    due_s: float = 0.0
     interval_s: float = 0.0
     has_no_client: bool = True
+    is_told_of: bool = False
+
+    @property
+    def longest_s(self) -> float:
+        """Longest interval for each server that the pump has [s]."""
+        if self.is_told_of:
+            return _POLL_PER_EXPECTED_SERVER_S
+        return _POLL_PER_IDLE_SERVER_S if self.has_no_client else _POLL_PER_SERVER_S
 
 
 @dataclass(slots=True)
@@ -109,10 +120,14 @@ class ServerPump:
         self._servers = tuple(servers)
         self._turns = [_Turn(server) for server in self._servers]
         # By the time when they are due, then by their place: a round looks at those alone that are.
-        self._due_polls = [(0.0, place, _Polling(server)) for place, server in enumerate(self._servers)]
+        self._polling = [_Polling(server) for server in self._servers]
+        self._due_polls = [(0.0, place) for place in range(len(self._servers))]
         self._due_turns = [(0.0, place) for place in range(len(self._servers))]
         self._updated: deque[int] = deque()
         """Places of the servers that have been updated; other threads add to it."""
+        self._expected: deque[int] = deque()
+        """Places of the servers to which something was sent; other threads add to it."""
+        self._place_of = {id(server): place for place, server in enumerate(self._servers)}
         self._longest_interval_s = max(_SHORTEST_INTERVAL_S, _INTERVAL_PER_SERVER_S * len(self._servers))
         self._stopping = threading.Event()
         self._thread = threading.Thread(target=self._run, name="mms-pump", daemon=True)
@@ -141,6 +156,18 @@ class ServerPump:
         self._started = True
         _running.add(self)
         self._thread.start()
+
+    def expect(self, server: PumpedServer) -> None:
+        """Poll a server in the next round: something has been sent to it. Any thread may call this.
+
+        Parameters
+        ----------
+        server : PumpedServer
+            One of the pump's; of others it knows nothing.
+        """
+        place = self._place_of.get(id(server))
+        if place is not None:
+            self._expected.append(place)
 
     def stop(self) -> None:
         """Stop serving and free all servers; a second call does nothing. No handler may call this."""
@@ -174,9 +201,17 @@ class ServerPump:
         """Serve what has come to the servers that are due; return True if anything had."""
         busy = False
         now_s = time.monotonic()
-        polled = []
+        due: set[int] = set()
+        while self._expected:
+            place = self._expected.popleft()
+            self._polling[place].is_told_of = True
+            due.add(place)
         while self._due_polls and self._due_polls[0][0] <= now_s:
-            _, place, polling = heappop(self._due_polls)
+            due_s, place = heappop(self._due_polls)
+            if due_s == self._polling[place].due_s:
+                due.add(place)
+        for place in due:
+            polling = self._polling[place]
             if polling.server.serve_pending():
                 busy = True
                 polling.interval_s = 0.0
@@ -184,12 +219,10 @@ class ServerPump:
                 polling.has_no_client = polling.server.connections == 0
                 self._hasten_turn(place, now_s + _TURN_DELAY_AFTER_REQUEST_S)
             else:
-                each_s = _POLL_PER_IDLE_SERVER_S if polling.has_no_client else _POLL_PER_SERVER_S
-                longest_s = len(self._servers) * each_s
+                longest_s = len(self._servers) * polling.longest_s
                 polling.interval_s = min(max(2 * polling.interval_s, _SHORTEST_POLL_S), longest_s)
-            polled.append((now_s + polling.interval_s, place, polling))
-        for each in polled:
-            heappush(self._due_polls, each)
+            polling.due_s = now_s + polling.interval_s
+            heappush(self._due_polls, (polling.due_s, place))
         return busy
 
     def _hasten_turn(self, place: int, due_s: float) -> None:

@@ -5,8 +5,9 @@ import queue
 import statistics
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -149,3 +150,57 @@ def test_a_client_that_does_not_read_holds_up_nobody(file_root: Path) -> None:
         fetcher.join(20)
     assert eventually(lambda: servers[0].connections == 0)
     pump.stop()
+
+
+class _QuietServer:
+    """A server that nobody has sent anything; it counts how often it is asked."""
+
+    connections = 1
+
+    def __init__(self) -> None:
+        self.polled_s: list[float] = []
+
+    def tell_updates(self, updated: Callable[[], None]) -> None:
+        del updated
+
+    def listen(self) -> None:
+        pass
+
+    def serve_pending(self) -> bool:
+        self.polled_s.append(time.monotonic())
+        return False
+
+    def take_turn(self) -> bool:
+        return False
+
+    def close(self) -> None:
+        pass
+
+
+def test_a_server_that_is_told_of_is_polled_then_and_hardly_ever_else() -> None:
+    servers = [_QuietServer() for _ in range(300)]
+
+    def all_polled_since(moment_s: float) -> bool:
+        return all(each.polled_s[-1] >= moment_s for each in servers)
+
+    with ServerPump(servers) as pump:
+        delays_s = []
+        for _ in range(20):
+            told_s = time.monotonic()
+            for server in servers:
+                pump.expect(server)
+            assert eventually(partial(all_polled_since, told_s))
+            delays_s.append(max(server.polled_s[-1] for server in servers) - told_s)
+        assert statistics.median(delays_s) < 0.1, "far less than the 0.3 s that 300 servers may be left alone"
+        before = sum(len(server.polled_s) for server in servers)
+        began_s = time.monotonic()
+        assert eventually(lambda: time.monotonic() - began_s > 1.0)
+        polls = sum(len(server.polled_s) for server in servers) - before
+    assert polls < 10 * len(servers), "a server that nobody is told of would be polled 33 times"
+
+
+def test_others_servers_are_no_business_of_a_pump() -> None:
+    server = _QuietServer()
+    with ServerPump([server]) as pump:
+        pump.expect(_QuietServer())
+        assert eventually(lambda: len(server.polled_s) >= 2)
