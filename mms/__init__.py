@@ -47,6 +47,7 @@ from mms.server.file_access import FileAnswer, FileOperation, FileRequest
 from mms.server.pump import ServerPump
 from mms.server.server import Server
 from mms.server.services import MOST_CONNECTIONS, Identity
+from mms.server.silent_connections import SilentConnections
 from mms.values import GOOD, BitString, DataAccessError, Quality, Timestamp, Validity, Value
 
 __all__ = [
@@ -92,6 +93,7 @@ __all__ = [
     "ServerPump",
     "ServerStartFailed",
     "ServiceFailed",
+    "SilentConnections",
     "TemporarilyUnavailable",
     "Timeout",
     "Timestamp",

@@ -7,7 +7,7 @@ from tempfile import TemporaryDirectory
 from threading import Event, Thread
 from typing import Any
 
-from asyncua import Client
+from asyncua import Client, Node, ua
 
 from benchmarks.gateways.load import argument_parser, measure
 from benchmarks.gateways.plant import changing_plant
@@ -17,6 +17,9 @@ from service.configuration.settings import Settings
 from testing.ports import LOOPBACK, free_port
 from testing.service.gateways import running_gateways
 from testing.waiting import wait_until
+
+MOST_AT_ONCE = 1000
+"""Variables in one request."""
 
 
 class Subscribed:
@@ -31,7 +34,9 @@ class Subscribed:
 
     def datachange_notification(self, node: Any, value: int, _data: object) -> None:
         """Keep the health of a motor."""
-        self.healths[str(node.nodeid.Identifier).split("/")[1]] = value
+        _, motor, *variable = str(node.nodeid.Identifier).split("/")
+        if variable == ["DeviceHealth"]:
+            self.healths[motor] = value
 
     def close(self) -> None:
         """End the connection."""
@@ -41,9 +46,24 @@ class Subscribed:
     async def _follow(self) -> None:
         async with Client(self._address) as client:
             subscription = await client.create_subscription(100, self)
-            nodes = [client.get_node(f"ns=2;s=motor/{motor}/DeviceHealth") for motor in self._motors]
-            await subscription.subscribe_data_change(nodes)
+            first = f"motor/{self._motors[0]}/"
+            below = await _variables(client.get_node(f"ns=2;s={first.rstrip('/')}"))
+            names = [str(one.nodeid.Identifier).removeprefix(first) for one in below]
+            nodes = [
+                client.get_node(f"ns=2;s=motor/{motor}/{name}") for motor in self._motors for name in names
+            ]
+            for begin in range(0, len(nodes), MOST_AT_ONCE):
+                await subscription.subscribe_data_change(nodes[begin : begin + MOST_AT_ONCE])
+            print(f"subscribed to {len(names)} variables of each motor, {len(nodes)} in all")
             await asyncio.to_thread(self._end.wait)
+
+
+async def _variables(node: Node) -> list[Node]:
+    """The variables of a node, and of the objects below it."""
+    found = list(await node.get_variables())
+    for child in await node.get_children(nodeclassmask=ua.NodeClass.Object):
+        found += await _variables(child)
+    return found
 
 
 def main() -> None:

@@ -15,6 +15,7 @@ import sqlalchemy
 
 from service.storage import migrate
 from testing.memory_folder import memory_folder
+from testing.service.processes import descendants
 from testing.waiting import wait_until
 
 INSTALLED = Path("/usr/lib/postgresql")
@@ -88,6 +89,19 @@ class PostgresServer:
         if self._process is not None:
             self._process.send_signal(number)
             self._process.wait()
+
+    def freeze(self) -> None:
+        """Have all its processes stand still: what it is asked waits, and no connection ends."""
+        self._signal_all(signal.SIGSTOP)
+
+    def thaw(self) -> None:
+        """Let it go on."""
+        self._signal_all(signal.SIGCONT)
+
+    def _signal_all(self, number: signal.Signals) -> None:
+        assert self._process is not None
+        for process_id in (self._process.pid, *descendants(self._process.pid)):
+            os.kill(process_id, number)
 
     def close(self) -> None:
         """End it for good."""

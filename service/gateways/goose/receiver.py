@@ -82,7 +82,7 @@ class Receiver:
             except RawSocketError as error:  # An interface may come up later.
                 self._fail(str(error))
             except OSError as error:  # It is down or gone: a new socket is had once it is back.
-                self._fail(f"{self._interface}: {error}")
+                self._fail(f"{self._interface}: {error.strerror}")
 
     def _fail(self, problem: str) -> None:
         if self.problem != problem:

@@ -6,7 +6,15 @@ from pathlib import Path
 import structlog
 
 import scl
-from mms import Identity, Server, ServerStartFailed, TlsConfiguration, filter_tls_log_from_stderr, read_secret
+from mms import (
+    Identity,
+    Server,
+    ServerStartFailed,
+    SilentConnections,
+    TlsConfiguration,
+    filter_tls_log_from_stderr,
+    read_secret,
+)
 from scl.model_text import model_text
 from service.configuration.gateways.iec61850 import Iec61850Settings
 from service.gateways.context import GatewayContext
@@ -20,6 +28,9 @@ log = structlog.get_logger(__name__)
 
 DESCRIPTION = "statorwatch.icd"
 """File in the data directory, with which other systems are engineered."""
+
+ASSOCIATION_S = 5.0
+"""A client that has not associated within this time is sent away: there is room for few."""
 
 LOOK_S = 1.0
 """Longest wait for a change before it is seen whether the service is gone."""
@@ -51,6 +62,7 @@ class PlantIed:
         self._settings = settings
         self._file = data_directory / DESCRIPTION
         self._server: Server | None = None
+        self._silent: SilentConnections | None = None
         self._state = PlantState()
         self._devices: dict[str, str] = {}
         self.problem: str | None = None
@@ -73,6 +85,9 @@ class PlantIed:
 
     def stop(self) -> None:
         """End every connection."""
+        silent, self._silent = self._silent, None
+        if silent is not None:
+            silent.stop()
         server, self._server = self._server, None
         if server is not None:
             server.stop()
@@ -99,6 +114,8 @@ class PlantIed:
             self.problem = str(error)
             return
         self._server, self.problem = server, None
+        self._silent = SilentConnections((server.address, server.port), ASSOCIATION_S)
+        self._silent.start()
         log.info("serving IEC 61850", port=self._settings.port, logical_devices=1 + len(self._devices))
 
     def _update(self, change: PlantChange) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Final
 
 import structlog
-from asyncua import Server, ua
+from asyncua import ua
 from asyncua.crypto.truststore import TrustStore
 from asyncua.crypto.validator import CertificateValidator, CertificateValidatorOptions
 from asyncua.server.event_generator import EventGenerator
@@ -17,6 +17,7 @@ from service.gateways.opcua.address_space import OURS, PlantNodes
 from service.gateways.opcua.certificate import own_certificate
 from service.gateways.opcua.history import TrendHistory, utc
 from service.gateways.opcua.methods import PlantMethods
+from service.gateways.opcua.transport import BoundedServer
 from service.gateways.opcua.users import PlantRules, ServiceUsers
 from service.gateways.opcua.values import SEVERITIES
 from service.gateways.plant_state.figures import PlantChange
@@ -76,10 +77,10 @@ async def _serve(context: GatewayContext, settings: OpcUaSettings) -> None:
             await server.stop()
 
 
-async def _server(context: GatewayContext, settings: OpcUaSettings) -> Server:
+async def _server(context: GatewayContext, settings: OpcUaSettings) -> BoundedServer:
     data_directory = context.settings.data_directory
     uri = f"urn:statorwatch:{installation_id(data_directory)}"
-    server = Server(
+    server = BoundedServer(
         user_manager=ServiceUsers(context.repository, context.settings.access, anonymous=settings.anonymous)
     )
     server.product_uri, server.manufacturer_name = "urn:statorwatch", "StatorWatch"
@@ -114,7 +115,7 @@ async def _validator(trusted: Path) -> CertificateValidator:
     return CertificateValidator(options, store)
 
 
-async def _begun(settings: OpcUaSettings, server: Server) -> str | None:
+async def _begun(settings: OpcUaSettings, server: BoundedServer) -> str | None:
     """Listen. Return why that cannot be, None where it can; it is tried again."""
     with socket.socket() as probe:  # the library is not to be started again after it failed
         probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -127,7 +128,7 @@ async def _begun(settings: OpcUaSettings, server: Server) -> str | None:
     return None
 
 
-async def _events(server: Server) -> EventGenerator:
+async def _events(server: BoundedServer) -> EventGenerator:
     index = await server.get_namespace_index(OURS)
     kind = await server.create_custom_event_type(
         index, "MotorAlarmEventType", ua.ObjectIds.BaseEventType, list(EVENT_FIELDS)

@@ -1,13 +1,15 @@
 """Follows the plant's state in the database: one cheap question tells whether to read it again."""
 
 import time
-from threading import Event
+from dataclasses import dataclass, replace
+from threading import Event, Thread
 
 import structlog
 from sqlalchemy.exc import SQLAlchemyError
 
 from service.gateways.plant_state.figures import PlantChange, PlantState
 from service.gateways.plant_state.reading import read_plant_state
+from service.storage.change_counter import ChangeCounter
 from service.storage.repository import Repository
 from service.storage.repository.overviews.change_stamps import Subject
 from service.timing.database_silence import database_trouble
@@ -27,11 +29,17 @@ REFRESH_S = 30.0
 SILENCE_S = 30.0
 """Where the database has not answered for so long, no value is good any more."""
 
+END_S = 2.0
+"""Longest wait for the reading thread to end: a query may hang."""
+
 SUBJECTS = (Subject.FLEET, Subject.ALARMS)
 
 
 class PlantFollower:
-    """Tells of each change of the plant's state. Belongs to one thread."""
+    """Tells of each change of the plant's state. Belongs to one thread.
+
+    It reads on another one: while a query hangs, its owner still learns that nothing is good any more.
+    """
 
     def __init__(
         self,
@@ -41,28 +49,23 @@ class PlantFollower:
         period_s: float = PERIOD_S,
         silence_s: float = SILENCE_S,
     ) -> None:
-        self._repository = repository
-        self._stale_after_days = stale_after_days
+        self._reader = _Reader(repository, stale_after_days, period_s)
         self._period_s = period_s
         self._silence_s = silence_s
-        self._counter = repository.change_counter()
-        self._counted: object = None
-        self._stamps: object = None
         self._told = PlantState()
-        self._read_s: float | None = None
-        self._answered_s: float | None = None
-        self._pause_s = 0.0
         self.problem: str | None = None
         """Why nothing is known of changes at present; None while the database answers."""
 
     def next_change(self, stop: Event, *, longest_s: float = float("inf")) -> PlantChange | None:
         """Return the next change; the first one has the whole plant.
 
-        None: `stop` was set, or nothing changed for `longest_s`.
+        None: `stop` was set, or nothing changed for `longest_s`. Raises what reading raises, unless it is
+        that the database does not answer.
         """
+        self._reader.start()
         end_s = time.monotonic() + longest_s
         while not stop.is_set() and time.monotonic() < end_s:
-            found = self._look()
+            found = self._latest()
             if found is not None and found != self._told:
                 change = PlantChange(self._told, found)
                 self._told = found
@@ -71,27 +74,100 @@ class PlantFollower:
         return None
 
     def close(self) -> None:
-        """Give the counter's connection back."""
-        self._counter.close()
+        """End the reading. What is asked afterwards begins it again."""
+        self._reader.stop()
 
-    def _look(self) -> PlantState | None:
-        """Return the state, if it was read; one without good values where the database is silent for long."""
-        now_s = time.monotonic()
+    def _latest(self) -> PlantState | None:
+        """Return the state that was read last, without good values where that is long ago."""
+        found = self._reader.found
+        if found.error is not None:
+            raise found.error
+        silent_s = 0.0 if found.answered_s is None else time.monotonic() - found.answered_s
+        is_silent = silent_s > self._silence_s
+        trouble = f"the database has not answered for {silent_s:.0f} s" if is_silent else None
+        trouble = found.trouble or trouble
+        if trouble is not None and self.problem is None:
+            log.warning("gateways are not told of changes", error=trouble)
+        if trouble is None and self.problem is not None:
+            log.info("the database answers again")
+        self.problem = trouble
+        if is_silent and found.state is not None:
+            return found.state.as_uncertain("the service's database does not answer")
+        return found.state
+
+
+@dataclass(frozen=True, slots=True)
+class _Found:
+    """What reading has come to. It is replaced as a whole, so that no other thread sees half of it.
+
+    state: None before the first one.  answered_s: when the latest question was put that the database
+    answered.  trouble: why it does not answer.  error: what has ended the reading.
+    """
+
+    state: PlantState | None = None
+    answered_s: float | None = None
+    trouble: str | None = None
+    error: Exception | None = None
+
+
+class _Reader:
+    """Reads the state again when something has changed, on a thread of its own."""
+
+    def __init__(self, repository: Repository, stale_after_days: float | None, period_s: float) -> None:
+        self._repository = repository
+        self._stale_after_days = stale_after_days
+        self._period_s = period_s
+        self._counted: object = None
+        self._stamps: object = None
+        self._read_s: float | None = None
+        self._pause_s = 0.0
+        self._ending = Event()
+        self._thread: Thread | None = None
+        self.found = _Found()
+
+    def start(self) -> None:
+        """Begin to read, unless that is under way."""
+        if self._thread is None:
+            self._ending = Event()
+            self._thread = Thread(
+                target=self._run, args=(self._ending,), name="plant state reader", daemon=True
+            )
+            self._thread.start()
+
+    def stop(self) -> None:
+        """End the reading; a query that hangs is left to itself."""
+        self._ending.set()
+        thread, self._thread = self._thread, None
+        if thread is not None:
+            thread.join(END_S)
+
+    def _run(self, ending: Event) -> None:
+        counter = self._repository.change_counter()
+        try:
+            while not ending.is_set():
+                self._look(counter)
+                ending.wait(self._period_s)
+        except Exception as error:  # its owner raises it: the gateway ends, and is started again
+            log.exception("the plant's state cannot be read")
+            self.found = replace(self.found, error=error)
+        finally:
+            counter.close()
+
+    def _look(self, counter: ChangeCounter) -> None:
+        asked_s = time.monotonic()
+        try:
+            state = self._read_if_changed(counter, asked_s)
+        except SQLAlchemyError as error:
+            self._counted = self._stamps = None
+            self.found = replace(self.found, trouble=database_trouble(error))
+            return
+        self.found = _Found(state or self.found.state, asked_s)
+
+    def _read_if_changed(self, counter: ChangeCounter, now_s: float) -> PlantState | None:
+        counted = counter.value()
         if self._read_s is not None and now_s - self._read_s < self._pause_s:
             return None
-        try:
-            found = self._read_if_changed(now_s)
-        except SQLAlchemyError as error:
-            return self._silent(database_trouble(error), now_s)
-        self._answered_s = now_s
-        if self.problem is not None:
-            log.info("the database answers again")
-            self.problem = None
-        return found
-
-    def _read_if_changed(self, now_s: float) -> PlantState | None:
         is_old = self._read_s is None or now_s - self._read_s > REFRESH_S
-        counted = self._counter.value()
         if counted == self._counted and not is_old:
             return None
         stamps = self._repository.change_stamps(SUBJECTS)
@@ -104,11 +180,3 @@ class PlantFollower:
             self._pause_s = max(SHORTEST_PAUSE_S, SHARE * (self._read_s - now_s))
         self._counted, self._stamps = counted, stamps
         return state
-
-    def _silent(self, trouble: str, now_s: float) -> PlantState | None:
-        if self.problem is None:
-            log.warning("gateways are not told of changes", error=trouble)
-            self.problem = trouble
-        self._counted = self._stamps = None
-        is_long = self._answered_s is not None and now_s - self._answered_s > self._silence_s
-        return self._told.as_uncertain("the service's database does not answer") if is_long else None

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterator
 
 from core.condition.kinds import State
 from core.condition.verdict.advice import advice
+from core.units import NANOSECONDS_PER_DAY
 from service.condition.staleness import is_stale, stale_after_ns
 from service.gateways.plant_state.device_health import health_of_motor, health_of_relay
 from service.gateways.plant_state.figures import MotorFigures, PlantState, Quality, RelayFigures
@@ -16,6 +17,8 @@ MOST_ALARMS = 1000
 """Open alarms that are told; the most urgent ones come first."""
 
 MOST_REASONS = 10
+AHEAD_NS = NANOSECONDS_PER_DAY
+"""A record may be so far ahead of the service's clock: relays may keep local time."""
 NOT_JUDGED = "no valid record of the motor has been judged yet"
 
 
@@ -53,7 +56,7 @@ def _motor(
     oldest_ns = stale_after_ns(one.motor.schedule, stale_after_days)
     stale = is_stale(condition, now_ns, oldest_ns)
     rotor = None if one.rotor is None else one.rotor.state
-    quality, reason = _quality(one, stale=stale)
+    quality, reason = _quality(one, now_ns, stale=stale)
     running = running_state(one.link, condition.as_of_ns, condition.stood_ns)
     seen_ns = max(condition.as_of_ns or 0, condition.stood_ns or 0)
     is_seen_lately = running is RunningState.UNKNOWN or now_ns - seen_ns <= oldest_ns
@@ -91,13 +94,15 @@ def _motor(
     )
 
 
-def _quality(one: FleetMotor, *, stale: bool) -> tuple[Quality, str | None]:
+def _quality(one: FleetMotor, now_ns: int, *, stale: bool) -> tuple[Quality, str | None]:
     """Return how far the figures of a motor can be relied on, and why not further."""
     condition = one.condition
     if condition.as_of_ns is None:
         return Quality.BAD, NOT_JUDGED
     if condition.problem is not None:
         return Quality.UNCERTAIN, f"later records are not taken into account: {condition.problem}"
+    if condition.as_of_ns > now_ns + AHEAD_NS:
+        return Quality.UNCERTAIN, "the latest record is of a later time than now: a clock is wrong"
     if stale:
         return Quality.UNCERTAIN, "the latest record that counts is older than the next ones were due"
     if condition.state is State.UNKNOWN:

@@ -21,7 +21,7 @@ IN_NAMESPACE = ("unshare", "--user", "--map-root-user", "--net")
 
 
 def test_a_trip_is_an_alarm_and_a_signal_asks_for_a_recording(tmp_path: Path) -> None:
-    """Trip, killed gateway, silence, a wrong revision, a bad quality, random octets, and the trip's end."""
+    """Trip, killed gateway, silence, a wrong revision, a bad quality, random octets, and the end of it."""
     if subprocess.run([*IN_NAMESPACE, "true"], capture_output=True, check=False).returncode:
         pytest.skip("the kernel lets nobody make a network namespace here")
     command = [*IN_NAMESPACE, sys.executable, "-m", "tests.service.gateways.goose.two_interfaces"]
@@ -41,6 +41,7 @@ def test_a_trip_is_an_alarm_and_a_signal_asks_for_a_recording(tmp_path: Path) ->
         "after a wrong revision": ["another confRev than configured", 1],
         "after a bad quality": True,
         "after the truth": ["FAN-A2"],
+        "while it is down": [True, "right: Network is down"],
     }
 
 

@@ -6,11 +6,15 @@ It prints what it found as JSON.
 import json
 import os
 import signal
+import sqlite3
 import subprocess
 import sys
 import time
+from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
+
+from sqlalchemy import make_url
 
 import scl
 from core.warm_up import warm_up
@@ -53,7 +57,9 @@ def main(directory: Path) -> None:
     names = [ied.name for ied in scl.read(scl.DEMO_PLANT_SCD).ieds]
     scl.with_addresses(scl.DEMO_PLANT_SCD, file, {name: Address(LOOPBACK, free_port()) for name in names})
     document = scl.read(file)
-    (block,), (other_block,) = (goose_blocks(document.ied(name)) for name in ("A1_SEL710", "A2_SEL710"))
+    (block,), (other_block,), (third_block,) = (
+        goose_blocks(document.ied(name)) for name in ("A1_SEL710", "A2_SEL710", "B1_SEL710")
+    )
     goose = GooseSettings(interface="right", triggers=(GooseTrigger(signal=TRIP, motors=("FAN-A2",)),))
     settings = Settings(
         data_directory=directory,
@@ -78,6 +84,8 @@ def main(directory: Path) -> None:
     with started_gateways(settings) as gateways, RawSocket("left") as sender:
         found["silent"] = _problem(gateways, "not heard")
         _lie(gateways, sender, block, other_block, repository, found)
+        with closing(sqlite3.connect(make_url(settings.database_url).database or "")) as database:
+            _trip_while_neither_answers(gateways, sender, third_block, database, repository, found)
     print(json.dumps(found))  # noqa: T201 - the test reads it
 
 
@@ -124,6 +132,33 @@ def _lie(
     # A sender that begins anew is one that replays, until it was silent for as long as it promised.
     wait_until(lambda: good.tells() and "PUMP-A1" not in _tripped(repository), "the alarm to be cleared")
     found["after the truth"] = _tripped(repository)
+
+
+def _trip_while_neither_answers(
+    gateways: PlantGateways,
+    sender: RawSocket,
+    block: GooseBlock,
+    database: sqlite3.Connection,
+    repository: Repository,
+    found: dict[str, object],
+) -> None:
+    """Trip while somebody else writes to the database, and let the interface fall before that ends."""
+    database.execute("BEGIN IMMEDIATE")
+    relay = _Relay(sender, block, GOOD, trip=True)
+    assert relay.tells()
+    wait_until(_all_frames_are_read, "the gateway to have the trip")
+    _ip("link set right down")
+    database.rollback()
+    wait_until(lambda: len(_alarms(repository)) == 2, "the alarm of the trip")
+    found["while it is down"] = ["CONVEYOR-B1" in _tripped(repository), _problem(gateways, "right: ")]
+    _ip("link set right up")
+    wait_until(lambda: relay.tells() and "5 of 6" in (_goose(gateways).problem or ""), "it to hear again")
+
+
+def _all_frames_are_read() -> bool:
+    """Tell whether no frame waits in a socket of this network that hears GOOSE."""
+    sockets = [line.split() for line in Path("/proc/net/packet").read_text().splitlines()[1:]]
+    return all(int(waiting) == 0 for _, _, _, protocol, _, _, waiting, *_ in sockets if protocol == "88b8")
 
 
 class _Relay:

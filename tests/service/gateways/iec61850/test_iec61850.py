@@ -7,7 +7,7 @@ import queue
 import signal
 import socket
 from collections.abc import Iterator
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from dataclasses import replace
 from pathlib import Path
 
@@ -186,10 +186,23 @@ def test_nobody_writes(port: int) -> None:
                 client.write(open_mms.ObjectName(name, PUMP), value)
 
 
-def test_five_clients_at_a_time_and_silent_ones_end(port: int) -> None:
-    crowd = [socket.create_connection((LOOPBACK, port)) for _ in range(20)]
-    for one in crowd:
+def test_a_hundred_silent_clients_keep_nobody_out(port: int) -> None:
+    with ExitStack() as open_sockets:
+        crowd = [
+            open_sockets.enter_context(socket.create_connection((LOOPBACK, port), timeout=60))
+            for _ in range(100)
+        ]
+        _wait_for_service(port)
+        assert crowd[0].recv(1) == b"", "the first one has been sent away"
+
+
+def test_clients_that_come_and_go_keep_nobody_out(port: int) -> None:
+    for one in [socket.create_connection((LOOPBACK, port)) for _ in range(20)]:
         one.close()
+    _wait_for_service(port)
+
+
+def _wait_for_service(port: int) -> None:
 
     def is_served() -> bool:
         try:
@@ -198,7 +211,7 @@ def test_five_clients_at_a_time_and_silent_ones_end(port: int) -> None:
         except MmsError:
             return False
 
-    assert eventually(is_served)
+    assert eventually(is_served, within_s=120)
 
 
 @settings(max_examples=40, deadline=None)

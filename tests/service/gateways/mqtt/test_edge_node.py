@@ -5,6 +5,7 @@ import random
 import signal
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -237,3 +238,43 @@ def test_a_node_is_born_and_dies_with_its_primary_host(
         wait_until(lambda: kinds(heard)[7:] == BORN, "the births of the next connection")
     first, second = told(heard, "NBIRTH")
     assert (first.value("bdSeq"), second.value("bdSeq")) == (0, 1)
+
+
+def test_a_primary_host_that_leaves_in_the_middle_of_the_births_is_heeded(
+    repository: Repository, broker: Mosquitto, tmp_path: Path
+) -> None:
+    plant = two_motor_plant()
+    first = plant.motors[0]
+    motors = tuple(replace(first, motor=replace(first.motor, name=f"M{number}")) for number in range(300))
+    repository.sync_plant(replace(plant, motors=motors))
+    settings = settings_of(tmp_path, broker.port, sparkplug={"primary_host": "SCADA1"})
+    with broker.listening("spBv1.0/StatorWatch/#") as heard, started_gateways(settings) as gateways:
+
+        def says(online: str, timestamp: int) -> None:
+            text = f'{{"online": {online}, "timestamp": {timestamp}}}'
+            broker.publish("spBv1.0/STATE/SCADA1", text.encode(), retain=True)
+
+        def waits() -> bool:
+            return "waits for its primary host" in (gateways.status()[0].problem or "")
+
+        def has_heard(number: int) -> bool:
+            return len(heard) > number
+
+        def has_died_since(number: int) -> bool:
+            return "NDEATH" in kinds(heard)[number:]
+
+        wait_until(waits, "the edge node to wait")
+        for begins in range(1, 4):
+            before = len(heard)
+            says("true", 10 * begins)
+            wait_until(partial(has_heard, before + 5), "the first births")
+            says("false", 10 * begins + 1)
+            wait_until(partial(has_died_since, before), "the death")
+            wait_until(waits, "the edge node to wait again")
+            found = kinds(heard)[before:]
+            assert found[0] == "NBIRTH"
+            assert set(found[found.index("NDEATH") :]) == {"NDEATH"}, "nothing is told after a death"
+        before = len(heard)
+        says("true", 1000)
+        wait_until(lambda: kinds(heard)[before:].count("DBIRTH") == len(motors), "all births")
+        assert kinds(heard)[before] == "NBIRTH"

@@ -21,11 +21,12 @@ from service.configuration.gateways.opcua import OpcUaSettings
 from service.configuration.gateways.settings import GatewaysSettings
 from service.configuration.settings import Settings
 from service.gateways.opcua.certificate import own_certificate
+from service.gateways.opcua.transport import LARGEST_UNFINISHED
 from service.gateways.supervision import PlantGateways
 from service.recording_store.folder import FolderStore
 from service.storage import Repository
 from service.storage.records import Role
-from service.storage.states import AlarmKind, LinkState
+from service.storage.states import AlarmKind, AlarmState, LinkState
 from testing.not_installed import not_installed
 from testing.ports import LOOPBACK, free_port
 from testing.service.accounts import TESTS
@@ -48,9 +49,13 @@ def settings_of(directory: Path, **table: object) -> Settings:
     return Settings(data_directory=directory, stale_after_days=3650, gateways=GatewaysSettings(opcua=server))
 
 
-def address_of(settings: Settings) -> str:
+def port_of(settings: Settings) -> int:
     assert settings.gateways.opcua is not None
-    return f"opc.tcp://{LOOPBACK}:{settings.gateways.opcua.port}/"
+    return settings.gateways.opcua.port
+
+
+def address_of(settings: Settings) -> str:
+    return f"opc.tcp://{LOOPBACK}:{port_of(settings)}/"
 
 
 def add_user(repository: Repository, name: str, role: Role) -> None:
@@ -247,6 +252,32 @@ def test_users_may_what_their_roles_allow(repository: Repository, tmp_path: Path
     assert ("recording-requested", "otto", "opcua") in done(repository)
 
 
+def test_an_alarm_is_acknowledged_by_who_may(repository: Repository, tmp_path: Path) -> None:
+    add_user(repository, "vera", Role.VIEWER)
+    add_user(repository, "otto", Role.OPERATOR)
+    repository.raise_alarm("A1_SEL710", AlarmKind.FILE_REFUSED, "E1.CEV", "cut off", now_ns=NOW_NS)
+    (alarm,) = repository.open_alarms(limit=5).items
+    chosen = settings_of(tmp_path)
+
+    async def acknowledge(user: str, alarm_id: str) -> str:
+        try:
+            async with await encrypted(chosen, user) as client:
+                await node(client, "service").call_method("2:Acknowledge", alarm_id, "seen")
+        except ua.UaStatusCodeError as refused:
+            return type(refused).__name__
+        return "done"
+
+    with running_gateways(chosen):
+        assert asyncio.run(acknowledge("vera", alarm.id)) == "BadUserAccessDenied"
+        assert repository.alarm(alarm.id).state is AlarmState.UNACKNOWLEDGED
+        assert asyncio.run(acknowledge("otto", "no such alarm")) == "BadNotFound"
+        assert asyncio.run(acknowledge("otto", alarm.id)) == "done"
+        assert asyncio.run(acknowledge("otto", alarm.id)) == "BadInvalidState"
+    seen = repository.alarm(alarm.id)
+    assert (seen.state, seen.changed_by, seen.comment) == (AlarmState.ACKNOWLEDGED, "otto", "seen")
+    assert ("alarm-acknowledged", "otto", "opcua") in done(repository)
+
+
 def test_open62541_reads_encrypted_with_history_and_has_a_motor_recorded(
     repository: Repository, tmp_path: Path
 ) -> None:
@@ -280,8 +311,7 @@ def test_a_hundred_silent_clients_and_garbled_ones_keep_nobody_out(
     repository: Repository, open_settings: Settings
 ) -> None:
     tell(repository, HEALTHY)
-    assert open_settings.gateways.opcua is not None
-    port = open_settings.gateways.opcua.port
+    port = port_of(open_settings)
     crowd = [socket.create_connection((LOOPBACK, port)) for _ in range(90)]
     for number, one in enumerate(crowd):
         with suppress(OSError):
@@ -289,6 +319,18 @@ def test_a_hundred_silent_clients_and_garbled_ones_keep_nobody_out(
     assert eventually(lambda: value(open_settings, f"{PUMP}/State").Value.Value == "healthy")
     for one in crowd:
         one.close()
+
+
+def test_a_chunk_without_an_end_is_cut_off(repository: Repository, open_settings: Settings) -> None:
+    tell(repository, HEALTHY)
+    sent = 0
+    with socket.create_connection((LOOPBACK, port_of(open_settings)), timeout=20) as client:
+        client.sendall(b"MSGF\xff\xff\xff\x7f")
+        with suppress(ConnectionError):
+            while sent < 64 * LARGEST_UNFINISHED:
+                sent += client.send(b"x" * LARGEST_UNFINISHED)
+    assert sent < 64 * LARGEST_UNFINISHED
+    assert eventually(lambda: value(open_settings, f"{PUMP}/State").Value.Value == "healthy")
 
 
 def test_a_gateway_that_is_killed_is_back_with_the_right_values(

@@ -16,6 +16,7 @@ from service.gateways.plant_state.following import PlantFollower
 from service.gateways.plant_state.reading import NOT_JUDGED, read_plant_state
 from service.gateways.plant_state.running_state import RunningState, running_state
 from service.storage import Repository
+from service.storage.change_counter import ChangeCounter
 from service.storage.states import LinkState
 from testing.service.conditions import FAULT, HEALTHY, tell
 from testing.service.links import set_link_state
@@ -99,6 +100,34 @@ def test_nothing_is_good_while_the_database_is_silent_and_all_is_told_again_afte
     assert follower.problem is None
 
 
+def test_a_query_that_hangs_leaves_nothing_good(
+    repository: Repository, follower: PlantFollower, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tell(repository, HEALTHY)
+    assert next_change(follower).now.motors["PUMP-A1"].quality is Quality.GOOD
+    hangs, value = Event(), ChangeCounter.value
+
+    def hanging(counter: ChangeCounter) -> object:
+        assert hangs.wait(60)
+        return value(counter)
+
+    monkeypatch.setattr(ChangeCounter, "value", hanging)
+    assert next_change(follower).now.motors["PUMP-A1"].quality is Quality.UNCERTAIN
+    assert "the database has not answered for" in (follower.problem or "")
+    hangs.set()
+    assert next_change(follower).now.motors["PUMP-A1"].quality is Quality.GOOD
+    assert follower.problem is None
+
+
+def test_a_bug_in_reading_ends_the_gateway(follower: PlantFollower, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(*_: object, **__: object) -> None:
+        raise ZeroDivisionError("a bug")
+
+    monkeypatch.setattr("service.gateways.plant_state.following.read_plant_state", fail)
+    with pytest.raises(ZeroDivisionError, match="a bug"):
+        follower.next_change(Event(), longest_s=20)
+
+
 def test_stopping_ends_the_wait(follower: PlantFollower) -> None:
     next_change(follower)
     stop = Event()
@@ -138,9 +167,12 @@ def test_a_clock_that_jumps_makes_values_old_and_good_again_and_stops_nothing(
         assert next_change(follower).now.motors["PUMP-A1"].quality is Quality.GOOD
         wall_ns = NOW_NS + 3650 * NANOSECONDS_PER_DAY
         assert next_change(follower).now.motors["PUMP-A1"].quality is Quality.UNCERTAIN
-        # Behind the time of the record: it is of the future, and not old.
-        wall_ns = NOW_NS - 3650 * NANOSECONDS_PER_DAY
+        wall_ns = NOW_NS
         assert next_change(follower).now.motors["PUMP-A1"].quality is Quality.GOOD
+        wall_ns = NOW_NS - 3650 * NANOSECONDS_PER_DAY
+        ahead = next_change(follower).now.motors["PUMP-A1"]
+        assert ahead.quality is Quality.UNCERTAIN
+        assert ahead.quality_reason == "the latest record is of a later time than now: a clock is wrong"
         tell(repository, FAULT)
         assert next_change(follower).now.motors["PUMP-A1"].state is State.FAULT
         assert follower.problem is None
