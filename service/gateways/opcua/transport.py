@@ -15,8 +15,10 @@ LARGEST_UNFINISHED = 2 * 65_535
 """Bytes of a chunk that is not whole yet: twice the largest one that the server agrees to take."""
 
 
-class BoundedServer(Server):
+class BoundedServer(Server):  # type: ignore[misc]
     """Serves as the library does, through connections that are bounded."""
+
+    bserver: BinaryServer | None
 
     async def start(self) -> None:
         """Listen. Raises OSError."""
@@ -32,7 +34,7 @@ class BoundedServer(Server):
             raise
 
 
-class _BoundedBinaryServer(BinaryServer):
+class _BoundedBinaryServer(BinaryServer):  # type: ignore[misc]
     def _make_protocol(self) -> OPCUAProtocol:
         return _BoundedProtocol(
             iserver=self.iserver,
@@ -43,7 +45,9 @@ class _BoundedBinaryServer(BinaryServer):
         )
 
 
-class _BoundedProtocol(OPCUAProtocol):
+class _BoundedProtocol(OPCUAProtocol):  # type: ignore[misc]
+    _buffer: bytes
+
     def data_received(self, data: bytes) -> None:
         super().data_received(data)
         if len(self._buffer) <= LARGEST_UNFINISHED:
