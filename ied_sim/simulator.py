@@ -107,9 +107,17 @@ class Simulator:
         except ServerStartFailed as error:
             raise self._start_error(error.host) from error
         servers = {
-            Address(relay.server.address, relay.server.port): relay.server for relay in self.relays.values()
+            Address(relay.server.address, relay.server.port): relay.server
+            for relay in self.relays.values()
+            if not relay.serves_itself
         }
-        taken = self._proxies.start(lambda inside: self._pump.expect(servers[inside]))
+
+        def expect(inside: Address) -> None:
+            server = servers.get(inside)
+            if server is not None:
+                self._pump.expect(server)
+
+        taken = self._proxies.start(expect)
         if taken is not None:
             self.stop()
             raise self._start_error(str(taken))

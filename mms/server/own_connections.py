@@ -11,7 +11,13 @@ _ANY: Final = "0.0.0.0"  # noqa: S104 - compared, not listened at
 
 
 def sockets() -> dict[int, str]:
-    """Return the descriptors of this process's sockets, each with its name "socket:[inode]"."""
+    """Return the sockets of this process.
+
+    Returns
+    -------
+    dict of int to str
+        Their names, "socket:[inode]", by descriptor.
+    """
     found = {}
     for entry in _DESCRIPTORS.iterdir():
         with suppress(OSError):  # closed meanwhile

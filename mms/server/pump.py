@@ -47,7 +47,13 @@ class PumpedServer(Protocol):
         """Number of connected clients."""
 
     def tell_updates(self, updated: Callable[[], None]) -> None:
-        """Call this after each update, on whichever thread made it."""
+        """Take what is to be called after each update.
+
+        Parameters
+        ----------
+        updated : callable
+            Called on whichever thread made the update.
+        """
 
     def listen(self) -> None:
         """Open the port.
