@@ -211,6 +211,7 @@ class ServerPump:
         while self._expected:
             place = self._expected.popleft()
             self._polling[place].is_told_of = True
+            self._polling[place].interval_s = 0.0  # it may be told a moment before it comes
             due.add(place)
         while self._due_polls and self._due_polls[0][0] <= now_s:
             due_s, place = heappop(self._due_polls)

@@ -44,14 +44,15 @@ def gateway_id(settings: Settings, number: int) -> str:
 def main(settings_pipe: BinaryIO = sys.stdin.buffer) -> None:
     """Read the settings, collect until the pipe closes, end the process. The argument is its number."""
     child = begin_child("collector", settings_pipe)
-    settings = child.settings
+    settings, service_gone, plant = child.settings, child.parent_gone, plant_from_bytes(child.handed)
+    del child  # with the bytes of the plant
     number = int(sys.argv[1])
     if any(access.tls is not None for access in settings.relays.values()):
         filter_tls_log_from_stderr()
     allow_open_files(OPEN_FILES)
     # The same gateway of a killed service may be about to end: holding its lock, we know that it is dead.
     with exclusive(settings.data_directory / f"gateway-{number}.lock", wait=True):
-        left_over = _collect(settings, plant_from_bytes(child.handed), number, child.parent_gone)
+        left_over = _collect(settings, plant, number, service_gone)
         if left_over:
             # A thread inside the C library must neither keep the process nor see it torn down around itself.
             log.warning("ended with requests under way", sessions=left_over)
