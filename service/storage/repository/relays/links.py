@@ -119,7 +119,7 @@ def _set_states(session: Session, notes: Sequence[LinkNote]) -> None:
         if note.ied not in with_figures:
             with_figures.add(note.ied)
             session.add(LinkFiguresRow(ied=note.ied, day=note.day, day_bytes=0, **zeros))
-    _drop_old_changes(session, relays)
+    _drop_old_changes(session, _changed(session))
 
 
 def change_links(
@@ -128,7 +128,7 @@ def change_links(
     """Set the state of links, and add it to the history of those that it changes."""
     for row in rows:
         _change_link(session, row, state, reason, now_ns)
-    _drop_old_changes(session, {row.name for row in rows})
+    _drop_old_changes(session, _changed(session))
 
 
 def _change_link(session: Session, row: IedRow, state: LinkState, reason: str | None, now_ns: int) -> None:
@@ -142,9 +142,17 @@ def _change_link(session: Session, row: IedRow, state: LinkState, reason: str | 
     )
 
 
-def _drop_old_changes(session: Session, relays: Collection[str]) -> None:
-    """Write what the session holds, and drop the changes beyond MOST_CHANGES of each relay."""
+def _changed(session: Session) -> set[str]:
+    """Write what the session holds, and return the relays that got a change of their link."""
+    changed = {row.ied for row in session.new if isinstance(row, LinkChangeRow)}
     session.flush()
+    return changed
+
+
+def _drop_old_changes(session: Session, relays: Collection[str]) -> None:
+    """Drop the changes beyond MOST_CHANGES of each relay whose link has changed, once those are written."""
+    if not relays:
+        return
     crowded = (
         select(LinkChangeRow.ied)
         .where(LinkChangeRow.ied.in_(relays))
