@@ -4,6 +4,7 @@ import logging
 import threading
 import time
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from types import TracebackType
 from typing import Self
@@ -106,18 +107,10 @@ class Simulator:
                     relay.server.start()
         except ServerStartFailed as error:
             raise self._start_error(error.host) from error
-        servers = {
-            Address(relay.server.address, relay.server.port): relay.server
-            for relay in self.relays.values()
-            if not relay.serves_itself
-        }
-
-        def expect(inside: Address) -> None:
-            server = servers.get(inside)
-            if server is not None:
-                self._pump.expect(server)
-
-        taken = self._proxies.start(expect)
+        servers = [relay.server for relay in self.relays.values()]
+        taken = self._proxies.start(
+            {Address(one.address, one.port): partial(self._pump.expect, one) for one in servers}
+        )
         if taken is not None:
             self.stop()
             raise self._start_error(str(taken))

@@ -47,7 +47,6 @@ from mms.server.file_access import FileAnswer, FileOperation, FileRequest
 from mms.server.pump import ServerPump
 from mms.server.server import Server
 from mms.server.services import MOST_CONNECTIONS, Identity
-from mms.server.silent_connections import SilentConnections
 from mms.values import GOOD, BitString, DataAccessError, Quality, Timestamp, Validity, Value
 
 __all__ = [
@@ -93,7 +92,6 @@ __all__ = [
     "ServerPump",
     "ServerStartFailed",
     "ServiceFailed",
-    "SilentConnections",
     "TemporarilyUnavailable",
     "Timeout",
     "Timestamp",

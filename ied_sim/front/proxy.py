@@ -7,7 +7,6 @@ from asyncio import StreamReader, StreamWriter
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
-from functools import partial
 
 from ied_sim.front.reserved_address import ReservedAddress
 from ied_sim.front.rewriting import Rewriter
@@ -54,7 +53,7 @@ class RelayProxy:
         sessions: int,
         overflow_server: OpenOverflowServer,
     ) -> None:
-        self.passed_on: Callable[[], None] | None = None
+        self.passed_on: Callable[[], None] = _tell_nobody
         """Called after something was sent to the server."""
         self.outside = outside
         self._inside = inside
@@ -117,7 +116,7 @@ class RelayProxy:
             from_server, to_server = await asyncio.open_connection(address.host, address.port)
         except OSError:
             return
-        self._tell()
+        self.passed_on()
         session = _Session(
             writer, to_server, Rewriter(self._files, self._misbehaviour_state, self._report_ids)
         )
@@ -130,7 +129,7 @@ class RelayProxy:
                 task.cancel()
             await asyncio.gather(*tasks, return_exceptions=True)
             to_server.close()
-            self._tell()
+            self.passed_on()
 
     async def _requests(self, reader: StreamReader, session: _Session) -> None:
         with suppress(asyncio.IncompleteReadError, ConnectionError):
@@ -148,11 +147,7 @@ class RelayProxy:
                 else:
                     session.server.write(b"".join(message.units))
                 await session.server.drain()
-                self._tell()
-
-    def _tell(self) -> None:
-        if self.passed_on is not None:
-            self.passed_on()
+                self.passed_on()
 
     async def _responses(self, reader: StreamReader, session: _Session) -> None:
         with suppress(asyncio.IncompleteReadError, ConnectionError):
@@ -193,6 +188,10 @@ class RelayProxy:
 def _units(message: Message, user_data: bytes, size: int) -> bytes:
     """Return the data units to send: those that came where nothing was changed."""
     return b"".join(message.units) if user_data == message.user_data else units_of(user_data, size)
+
+
+def _tell_nobody() -> None:
+    """Leave it at having sent something."""
 
 
 class RelayProxies:
@@ -237,15 +236,15 @@ class RelayProxies:
         if inside is not None:
             inside.release()
 
-    def start(self, passed_on: Callable[[Address], None]) -> Address | None:
+    def start(self, passed_on: Mapping[Address, Callable[[], None]]) -> Address | None:
         """Open all proxies; return None, or the address of the first that cannot be had.
 
-        passed_on: called with the address of a server to which something was sent.
+        passed_on: what is called after something was sent to a server, by the server's address.
         """
         if not self._proxies:
             return None
         for proxy in self._proxies:
-            proxy.passed_on = partial(passed_on, self._reserved[proxy.outside].address)
+            proxy.passed_on = passed_on.get(self._reserved[proxy.outside].address, _tell_nobody)
         loop = asyncio.new_event_loop()
         thread = threading.Thread(target=loop.run_forever, name="front", daemon=True)
         self._running = (loop, thread)

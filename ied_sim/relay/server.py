@@ -227,17 +227,16 @@ class RelayServer:
 
     def _make_texts(self, request: FileRequest) -> None:
         """Write the texts that a client lists or opens, with their present content."""
-        is_text = any(path.endswith(request.path.name) for path in self._texts)
-        if request.operation is not FileOperation.LIST and not is_text:
-            return
         asked = request.path.relative_to(self._root.resolve()).as_posix()
-        for path, make in self._texts.items():
-            listed = request.operation is FileOperation.LIST and asked in (".", Path(path).parent.as_posix())
-            if listed or asked == path:
-                with self._writing_texts:
-                    made = self._staging / Path(path).name
-                    made.write_bytes(make())
-                    made.replace(self._root / path)
+        if request.operation is FileOperation.LIST:
+            wanted = [path for path in self._texts if asked in (".", Path(path).parent.as_posix(), path)]
+        else:
+            wanted = [asked] if asked in self._texts else []
+        for path in wanted:
+            with self._writing_texts:
+                made = self._staging / Path(path).name
+                made.write_bytes(self._texts[path]())
+                made.replace(self._root / path)
 
 
 def _with_built_in(misbehaviour_state: MisbehaviourState, points: RelayPoints, model: str) -> str:

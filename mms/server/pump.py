@@ -21,9 +21,10 @@ from collections import deque
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
-from heapq import heappop, heappush
 from types import TracebackType
 from typing import Final, Protocol, Self
+
+from mms.server.agenda import Agenda
 
 log: Final = logging.getLogger("mms")
 
@@ -88,10 +89,9 @@ class PumpedServer(Protocol):
 
 @dataclass(slots=True)
 class _Polling:
-    """When one server is polled next [s, monotonic], and how long after the last poll that is [s]."""
+    """How long after its last poll one server is polled next [s]."""
 
     server: PumpedServer
-    due_s: float = 0.0
     interval_s: float = 0.0
     has_no_client: bool = True
     is_told_of: bool = False
@@ -102,15 +102,6 @@ class _Polling:
         if self.is_told_of:
             return _POLL_PER_EXPECTED_SERVER_S
         return _POLL_PER_IDLE_SERVER_S if self.has_no_client else _POLL_PER_SERVER_S
-
-
-@dataclass(slots=True)
-class _Turn:
-    """When one server's next turn is due [s, monotonic], and the interval that then follows [s]."""
-
-    server: PumpedServer
-    due_s: float = 0.0
-    interval_s: float = _SHORTEST_INTERVAL_S
 
 
 class ServerPump:
@@ -124,11 +115,10 @@ class ServerPump:
 
     def __init__(self, servers: Iterable[PumpedServer]) -> None:
         self._servers = tuple(servers)
-        self._turns = [_Turn(server) for server in self._servers]
-        # By the time when they are due, then by their place: a round looks at those alone that are.
         self._polling = [_Polling(server) for server in self._servers]
-        self._due_polls = [(0.0, place) for place in range(len(self._servers))]
-        self._due_turns = [(0.0, place) for place in range(len(self._servers))]
+        self._polls = Agenda(len(self._servers))
+        self._turns = Agenda(len(self._servers))
+        self._turn_intervals_s = [_SHORTEST_INTERVAL_S] * len(self._servers)
         self._updated: deque[int] = deque()
         """Places of the servers that have been updated; other threads add to it."""
         self._expected: deque[int] = deque()
@@ -213,10 +203,8 @@ class ServerPump:
             self._polling[place].is_told_of = True
             self._polling[place].interval_s = 0.0  # it may be told a moment before it comes
             due.add(place)
-        while self._due_polls and self._due_polls[0][0] <= now_s:
-            due_s, place = heappop(self._due_polls)
-            if due_s == self._polling[place].due_s:
-                due.add(place)
+        while (next_place := self._polls.take(now_s)) is not None:
+            due.add(next_place)
         for place in due:
             polling = self._polling[place]
             if polling.server.serve_pending():
@@ -228,17 +216,13 @@ class ServerPump:
             else:
                 longest_s = len(self._servers) * polling.longest_s
                 polling.interval_s = min(max(2 * polling.interval_s, _SHORTEST_POLL_S), longest_s)
-            polling.due_s = now_s + polling.interval_s
-            heappush(self._due_polls, (polling.due_s, place))
+            self._polls.put(place, now_s + polling.interval_s)
         return busy
 
     def _hasten_turn(self, place: int, due_s: float) -> None:
         """Let a server's next turn be due at this time at the latest, and the ones after it soon."""
-        turn = self._turns[place]
-        turn.interval_s = _SHORTEST_INTERVAL_S
-        if due_s < turn.due_s:
-            turn.due_s = due_s
-            heappush(self._due_turns, (due_s, place))
+        self._turn_intervals_s[place] = _SHORTEST_INTERVAL_S
+        self._turns.hasten(place, due_s)
 
     def _give_turns(self) -> bool:
         """Give turns to due servers, the longest overdue first, until one has waited.
@@ -248,21 +232,14 @@ class ServerPump:
         now_s = time.monotonic()
         while self._updated:
             self._hasten_turn(self._updated.popleft(), now_s)
-        while self._is_turn_due(now_s):
-            due_s, place = heappop(self._due_turns)
-            turn = self._turns[place]
-            if due_s != turn.due_s:
-                continue  # it came earlier than this
-            waited = turn.server.take_turn()
-            turn.due_s = now_s + turn.interval_s
-            heappush(self._due_turns, (turn.due_s, place))
-            turn.interval_s = min(2 * turn.interval_s, self._longest_interval_s)
+        while (place := self._turns.take(now_s)) is not None:
+            interval_s = self._turn_intervals_s[place]
+            waited = self._servers[place].take_turn()
+            self._turns.put(place, now_s + interval_s)
+            self._turn_intervals_s[place] = min(2 * interval_s, self._longest_interval_s)
             if waited:
-                return self._is_turn_due(now_s)
+                return self._turns.is_due(now_s)
         return False
-
-    def _is_turn_due(self, now_s: float) -> bool:
-        return bool(self._due_turns) and self._due_turns[0][0] <= now_s
 
 
 _running: Final[set[ServerPump]] = set()

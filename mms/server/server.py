@@ -5,7 +5,6 @@ The library serves without threads of its own; a ServerPump drives any number of
 
 import threading
 from collections.abc import Callable, Iterable, Mapping
-from contextlib import nullcontext
 from enum import Enum
 from pathlib import Path
 from types import TracebackType
@@ -16,10 +15,10 @@ from mms.errors import ModelError, ServerStartFailed
 from mms.security.passwords import make_authenticator
 from mms.security.tls import TlsConfiguration, TlsContext
 from mms.server.attributes import Attributes
+from mms.server.connection_limits import ConnectionLimits
 from mms.server.controls import OperateHandler
 from mms.server.file_access import FileGuard, FileHook
 from mms.server.handlers import Handlers
-from mms.server.handshake_limit import end_connections_after
 from mms.server.model import Model
 from mms.server.pump import ServerPump
 from mms.server.read_access import ReadHandler
@@ -68,6 +67,8 @@ class Server:
         Accepted passwords. Without any, no password is required.
     tls_handshake_timeout_s : float
         Longest TLS handshake, during which nobody else is served [s].
+    association_timeout_s : float, optional
+        Time after which a client that has not associated is sent away [s]. Without it the library waits.
     identity : Identity, optional
         What the Identify service answers. The library's own name by default.
     dynamic_data_sets : int
@@ -91,8 +92,8 @@ class Server:
         file_root: Path | None = None, max_connections: int = MOST_CONNECTIONS,
         report_buffer_bytes: int = 65_536, on_file_request: FileHook | None = None,
         tls: TlsConfiguration | None = None, passwords: Iterable[str] = (),
-        tls_handshake_timeout_s: float = 5.0, identity: Identity | None = None, dynamic_data_sets: int = 0,
-        optional_fields_writable: bool = True,
+        tls_handshake_timeout_s: float = 5.0, association_timeout_s: float | None = None,
+        identity: Identity | None = None, dynamic_data_sets: int = 0, optional_fields_writable: bool = True,
     ) -> None:  # fmt: skip
         if not 0 < port < 65536:
             raise ValueError(f"not a TCP port: {port} (the library cannot choose one)")
@@ -104,8 +105,12 @@ class Server:
         self._lib: Final = library()
         self._lock = threading.RLock()
         self._state = _State.CREATED
-        self._tell_update: Callable[[], None] | None = None
-        self._tls_handshake_timeout_s = tls_handshake_timeout_s
+        self._updated: Callable[[], None] | None = None
+        self._limits = ConnectionLimits(
+            (address, port),
+            handshake_s=None if tls is None else tls_handshake_timeout_s,
+            association_s=association_timeout_s,
+        )
         self._pump: ServerPump | None = None
         authenticate = make_authenticator(self._lib, passwords)
         self._tls = None if tls is None else TlsContext(self._lib, tls)
@@ -321,6 +326,7 @@ class Server:
                 raise ServerStartFailed(where, "start the server", 0, reason)
             self._attributes.apply_posted_or_log()
             self._state = _State.RUNNING
+            self._limits.start()
 
     def serve_pending(self) -> bool:
         """Serve what clients have sent. The pump calls this.
@@ -362,8 +368,7 @@ class Server:
 
     def _process_incoming(self) -> None:
         """Accept, read and answer. A TLS handshake is waited for, with everything else at a standstill."""
-        own, limit_s = (self.address, self.port), self._tls_handshake_timeout_s
-        with nullcontext() if self._tls is None else end_connections_after(own, limit_s):
+        with self._limits.accepting():
             self._lib.IedServer_processIncomingData(self._server)
 
     def tell_updates(self, updated: Callable[[], None]) -> None:
@@ -374,11 +379,11 @@ class Server:
         updated : callable
             Must neither wait nor fail.
         """
-        self._tell_update = updated
+        self._updated = updated
 
     def _note_update(self) -> None:
-        if self._tell_update is not None:
-            self._tell_update()
+        if self._updated is not None:
+            self._updated()
 
     def close(self) -> None:
         """Free the server once no pump drives it: stop, destroy the server, then its model."""
@@ -386,6 +391,7 @@ class Server:
             if self._state is _State.STOPPED:
                 return
             if self._state is _State.RUNNING:
+                self._limits.stop()
                 self._lib.IedServer_stopThreadless(self._server)
             self._state = _State.STOPPED
             self._lib.IedServer_destroy(self._server)

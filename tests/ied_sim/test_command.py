@@ -21,7 +21,8 @@ from ied_sim.errors import SimulatorError
 from ied_sim.profiles.profile import shipped
 from ied_sim.scenario.scenario import healthy_reference
 from ied_sim.simulator import Simulator
-from mms import Client, FunctionalConstraint
+from mms import Client, FunctionalConstraint, ServerPump
+from mms.server.pump import PumpedServer
 from scl import Address
 from testing.ports import free_port
 from testing.relays.simulated import fetch, names, recordings
@@ -179,6 +180,28 @@ def test_meters_are_updated_while_serving(plant: Path, tmp_path: Path) -> None:
         server = simulator.relays["A1_SEL710"].server
         first = server.read("A1_SEL710MET/METMMXU1.Hz.t")
         wait_until(lambda: server.read("A1_SEL710MET/METMMXU1.Hz.t") != first, "new meter values")
+
+
+def test_the_pump_is_told_which_relay_a_request_went_to(
+    plant: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told: list[object] = []
+    expect = ServerPump.expect
+
+    def noting(pump: ServerPump, server: PumpedServer) -> None:
+        told.append(server)
+        expect(pump, server)
+
+    monkeypatch.setattr(ServerPump, "expect", noting)
+    names = ["A1_SEL710", "A2_SEL710"]
+    document = scl.read(plant)
+    with Simulator(document, {}, files=tmp_path, ieds=names) as simulator:
+        address = document.address("A2_SEL710")
+        with Client.connect(address.host, address.port) as client:
+            before = len(told)
+            assert client.logical_nodes("A2_SEL710CON")
+            assert len(told) > before
+        assert {id(server) for server in told} == {id(simulator.relays["A2_SEL710"].server)}
 
 
 def test_a_simulator_that_cannot_start_can_still_be_stopped(plant: Path, tmp_path: Path) -> None:

@@ -6,15 +6,7 @@ from pathlib import Path
 import structlog
 
 import scl
-from mms import (
-    Identity,
-    Server,
-    ServerStartFailed,
-    SilentConnections,
-    TlsConfiguration,
-    filter_tls_log_from_stderr,
-    read_secret,
-)
+from mms import Identity, Server, ServerStartFailed, TlsConfiguration, filter_tls_log_from_stderr, read_secret
 from scl.model_text import model_text
 from service.configuration.gateways.iec61850 import Iec61850Settings
 from service.gateways.context import GatewayContext
@@ -62,7 +54,6 @@ class PlantIed:
         self._settings = settings
         self._file = data_directory / DESCRIPTION
         self._server: Server | None = None
-        self._silent: SilentConnections | None = None
         self._state = PlantState()
         self._devices: dict[str, str] = {}
         self.problem: str | None = None
@@ -85,9 +76,6 @@ class PlantIed:
 
     def stop(self) -> None:
         """End every connection."""
-        silent, self._silent = self._silent, None
-        if silent is not None:
-            silent.stop()
         server, self._server = self._server, None
         if server is not None:
             server.stop()
@@ -114,8 +102,6 @@ class PlantIed:
             self.problem = str(error)
             return
         self._server, self.problem = server, None
-        self._silent = SilentConnections((server.address, server.port), ASSOCIATION_S)
-        self._silent.start()
         log.info("serving IEC 61850", port=self._settings.port, logical_devices=1 + len(self._devices))
 
     def _update(self, change: PlantChange) -> None:
@@ -144,6 +130,7 @@ class PlantIed:
             report_buffer_bytes=settings.report_buffer_bytes,
             tls=tls,
             passwords=passwords,
+            association_timeout_s=ASSOCIATION_S,
             identity=Identity("StatorWatch", "Motor health", revision),
         )
 

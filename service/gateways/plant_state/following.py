@@ -29,6 +29,8 @@ REFRESH_S = 30.0
 SILENCE_S = 30.0
 """Where the database has not answered for so long, no value is good any more."""
 
+NOT_READ = "the plant's state has not been read yet"
+
 END_S = 2.0
 """Longest wait for the reading thread to end: a query may hang."""
 
@@ -53,7 +55,8 @@ class PlantFollower:
         self._period_s = period_s
         self._silence_s = silence_s
         self._told = PlantState()
-        self.problem: str | None = None
+        self._is_troubled = False
+        self.problem: str | None = NOT_READ
         """Why nothing is known of changes at present; None while the database answers."""
 
     def next_change(self, stop: Event, *, longest_s: float = float("inf")) -> PlantChange | None:
@@ -70,7 +73,7 @@ class PlantFollower:
                 change = PlantChange(self._told, found)
                 self._told = found
                 return change
-            stop.wait(min(self._period_s, max(end_s - time.monotonic(), 0.0)))
+            self._reader.wait(min(self._period_s, max(end_s - time.monotonic(), 0.0)))
         return None
 
     def close(self) -> None:
@@ -86,11 +89,12 @@ class PlantFollower:
         is_silent = silent_s > self._silence_s
         trouble = f"the database has not answered for {silent_s:.0f} s" if is_silent else None
         trouble = found.trouble or trouble
-        if trouble is not None and self.problem is None:
+        if trouble is not None and not self._is_troubled:
             log.warning("gateways are not told of changes", error=trouble)
-        if trouble is None and self.problem is not None:
+        if trouble is None and self._is_troubled:
             log.info("the database answers again")
-        self.problem = trouble
+        self._is_troubled = trouble is not None
+        self.problem = trouble or (NOT_READ if found.state is None else None)
         if is_silent and found.state is not None:
             return found.state.as_uncertain("the service's database does not answer")
         return found.state
@@ -123,6 +127,7 @@ class _Reader:
         self._pause_s = 0.0
         self._ending = Event()
         self._thread: Thread | None = None
+        self._looked = Event()
         self.found = _Found()
 
     def start(self) -> None:
@@ -133,6 +138,11 @@ class _Reader:
                 target=self._run, args=(self._ending,), name="plant state reader", daemon=True
             )
             self._thread.start()
+
+    def wait(self, longest_s: float) -> None:
+        """Wait until the database was asked once more, but no longer than this."""
+        self._looked.wait(longest_s)
+        self._looked.clear()
 
     def stop(self) -> None:
         """End the reading; a query that hangs is left to itself."""
@@ -146,6 +156,7 @@ class _Reader:
         try:
             while not ending.is_set():
                 self._look(counter)
+                self._looked.set()
                 ending.wait(self._period_s)
         except Exception as error:  # its owner raises it: the gateway ends, and is started again
             log.exception("the plant's state cannot be read")

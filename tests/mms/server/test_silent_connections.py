@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from mms import Client, FunctionalConstraint, MmsError, Server, SilentConnections
+from mms import Client, FunctionalConstraint, MmsError, Server
 from testing.ports import LOOPBACK, free_port
 from testing.relays.model import MODEL_TEXT
 from testing.waiting import eventually
@@ -17,13 +17,8 @@ LIMIT_S = 1.0
 
 @pytest.fixture
 def server() -> Iterator[Server]:
-    with Server(MODEL_TEXT, port=free_port(), max_connections=2) as server:
-        silent = SilentConnections((LOOPBACK, server.port), LIMIT_S)
-        silent.start()
-        try:
-            yield server
-        finally:
-            silent.stop()
+    with Server(MODEL_TEXT, port=free_port(), max_connections=2, association_timeout_s=LIMIT_S) as server:
+        yield server
 
 
 def reads(client: Client) -> bool:

@@ -1,7 +1,7 @@
 """The relays' links: how they are, every change with its reason, and what went over them."""
 
 import uuid
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, fields
 
 from sqlalchemy import bindparam, case, delete, func, select, update
@@ -119,7 +119,7 @@ def _set_states(session: Session, notes: Sequence[LinkNote]) -> None:
         if note.ied not in with_figures:
             with_figures.add(note.ied)
             session.add(LinkFiguresRow(ied=note.ied, day=note.day, day_bytes=0, **zeros))
-    _drop_old_changes(session, _changed(session))
+    _write_changes(session)
 
 
 def change_links(
@@ -128,7 +128,7 @@ def change_links(
     """Set the state of links, and add it to the history of those that it changes."""
     for row in rows:
         _change_link(session, row, state, reason, now_ns)
-    _drop_old_changes(session, _changed(session))
+    _write_changes(session)
 
 
 def _change_link(session: Session, row: IedRow, state: LinkState, reason: str | None, now_ns: int) -> None:
@@ -142,24 +142,17 @@ def _change_link(session: Session, row: IedRow, state: LinkState, reason: str | 
     )
 
 
-def _changed(session: Session) -> set[str]:
-    """Write what the session holds, and return the relays that got a change of their link."""
+def _write_changes(session: Session) -> None:
+    """Write what the session holds, and drop the changes beyond MOST_CHANGES of those links that changed."""
     changed = {row.ied for row in session.new if isinstance(row, LinkChangeRow)}
     session.flush()
-    return changed
-
-
-def _drop_old_changes(session: Session, relays: Collection[str]) -> None:
-    """Drop the changes beyond MOST_CHANGES of each relay whose link has changed, once those are written."""
-    if not relays:
-        return
     crowded = (
         select(LinkChangeRow.ied)
-        .where(LinkChangeRow.ied.in_(relays))
+        .where(LinkChangeRow.ied.in_(changed))
         .group_by(LinkChangeRow.ied)
         .having(func.count() > MOST_CHANGES)
     )
-    for relay in session.scalars(crowded).all():
+    for relay in session.scalars(crowded).all() if changed else ():
         too_old = (
             select(LinkChangeRow.id)
             .where(LinkChangeRow.ied == relay)

@@ -28,7 +28,7 @@ def follower(repository: Repository, monkeypatch: pytest.MonkeyPatch) -> Iterato
     monkeypatch.setattr("service.gateways.plant_state.following.SHORTEST_PAUSE_S", 0.0)
     monkeypatch.setattr("service.gateways.plant_state.following.SHARE", 0)
     monkeypatch.setattr("service.gateways.plant_state.following.time.time_ns", lambda: NOW_NS)
-    follower = PlantFollower(repository, period_s=0.01, silence_s=0.2)
+    follower = PlantFollower(repository, period_s=0.01, silence_s=1.0)
     yield follower
     follower.close()
 
@@ -116,6 +116,24 @@ def test_a_query_that_hangs_leaves_nothing_good(
     assert "the database has not answered for" in (follower.problem or "")
     hangs.set()
     assert next_change(follower).now.motors["PUMP-A1"].quality is Quality.GOOD
+    assert follower.problem is None
+
+
+def test_a_gateway_is_told_that_nothing_is_known_yet(
+    repository: Repository, follower: PlantFollower, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    may_read, value = Event(), ChangeCounter.value
+
+    def waiting(counter: ChangeCounter) -> object:
+        assert may_read.wait(60)
+        return value(counter)
+
+    monkeypatch.setattr(ChangeCounter, "value", waiting)
+    assert follower.next_change(Event(), longest_s=0.05) is None
+    assert follower.problem == "the plant's state has not been read yet"
+    tell(repository, HEALTHY)
+    may_read.set()
+    next_change(follower)
     assert follower.problem is None
 
 
