@@ -1,11 +1,12 @@
 """The nodes of the server: machines and relays, each with its health and its figures."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Final
 
 from asyncua import Node, Server, ua
 
 from service.gateways.opcua.values import (
+    BESIDE_RECORDS,
     HISTORIES,
     INITIAL,
     MOTOR_VARIABLES,
@@ -15,7 +16,7 @@ from service.gateways.opcua.values import (
     motor_value,
     relay_value,
 )
-from service.gateways.plant_state.figures import MotorFigures, PlantChange, RelayFigures
+from service.gateways.plant_state.figures import MotorFigures, PlantChange, PlantState, RelayFigures
 from service.storage.records import Alarm, Quantity
 
 OURS: Final = "urn:statorwatch:plant"
@@ -26,6 +27,17 @@ HEALTH_TYPE: Final = 6244
 HEALTH_NAMES: Final = ("NORMAL", "FAILURE", "CHECK_FUNCTION", "OFF_SPEC", "MAINTENANCE_REQUIRED")
 MACHINES: Final = 1001
 """The folder Machines in the namespace of OPC UA for Machinery."""
+NAMES: Final = ua.VariantType.LocalizedText
+IDENTIFICATION: Final[Mapping[str, tuple[str, ua.VariantType]]] = {
+    "ComponentName": (DEVICES, NAMES),
+    "Manufacturer": (DEVICES, NAMES),
+    "Model": (DEVICES, NAMES),
+    "ProductInstanceUri": (DEVICES, ua.VariantType.String),
+    "Location": (MACHINERY, ua.VariantType.String),
+    "ProtectedBy": (OURS, ua.VariantType.String),
+}
+"""Namespace and type of what a device is known by (OPC 10000-100 and OPC 40001-1); the last one is ours."""
+
 READ_HISTORY: Final = ua.AccessLevel.CurrentRead.mask | ua.AccessLevel.HistoryRead.mask
 
 HISTORY_NODES = dict[ua.NodeId, tuple[str, Quantity]]
@@ -67,10 +79,12 @@ class PlantNodes:
         """Make what is new, delete what is gone, write what has changed."""
         for name in (*change.motors_gone, *change.relays_gone):
             await self._forget(name)
-        for motor in change.motors:
+        # What is known beside records is uncertain while the database is silent, whatever a motor's quality.
+        is_as_current = change.before.is_current == change.now.is_current
+        for motor in change.motors if is_as_current else change.now.motors.values():
             if f"motor/{motor.name}" not in self._devices:
                 await self._add_motor(motor)
-            await self._write_motor(motor)
+            await self._write_motor(motor, change.now)
         for relay in change.relays:
             if f"relay/{relay.name}" not in self._devices:
                 await self._add_relay(relay)
@@ -147,14 +161,14 @@ class PlantNodes:
             )
             await node.write_attribute(ua.AttributeIds.Historizing, ua.DataValue(ua.Variant(Value=True)))
 
-    async def _write_motor(self, motor: MotorFigures) -> None:
+    async def _write_motor(self, motor: MotorFigures, now: PlantState) -> None:
         path = f"motor/{motor.name}"
-        values = {f"{path}/{variable.name}": motor_value(variable, motor) for variable in MOTOR_VARIABLES}
+        values = {f"{path}/{one.name}": motor_value(one, motor, now) for one in MOTOR_VARIABLES}
         values[f"{path}/DeviceHealth"] = health_value(motor.device_health, motor.quality, motor.as_of_ns)
         state, node = item_state_values(motor, self._machinery)
         current = f"{path}/MachineryItemState/CurrentState"
         values |= {current: state, f"{current}/Id": node}
-        await self._write(values)
+        await self._write(values, read={f"{path}/{name}" for name in BESIDE_RECORDS})
 
     async def _add_relay(self, relay: RelayFigures) -> None:
         path = f"relay/{relay.name}"
@@ -195,11 +209,14 @@ class PlantNodes:
         identification = await node.add_object(
             ua.NodeId(f"{path}/Identification", self._ours), ua.QualifiedName("Identification", self._di)
         )
+        indices = {OURS: self._ours, DEVICES: self._di, MACHINERY: self._machinery}
         for name, text in properties.items():
+            namespace, kind = IDENTIFICATION[name]
+            value = ua.LocalizedText(text) if kind is NAMES else text
             await identification.add_property(
                 ua.NodeId(f"{path}/Identification/{name}", self._ours),
-                ua.QualifiedName(name, self._di),
-                text,
+                ua.QualifiedName(name, indices[namespace]),
+                ua.Variant(value, kind),
             )
 
     async def _forget(self, name: str) -> None:
@@ -211,9 +228,12 @@ class PlantNodes:
                     for one in [one for one in known if str(one.Identifier).startswith(f"{path}/")]:
                         del known[one]
 
-    async def _write(self, values: Mapping[str, ua.DataValue]) -> None:
+    async def _write(self, values: Mapping[str, ua.DataValue], *, read: Collection[str] = ()) -> None:
+        """Write those values that are others than before. read: that these were read again is no change."""
         for path, value in values.items():
             node_id = ua.NodeId(path, self._ours)
-            if self._told.get(node_id) != value:
+            told = self._told.get(node_id)
+            is_same = told is not None and (told.Value, told.StatusCode) == (value.Value, value.StatusCode)
+            if told != value and not (is_same and path in read):
                 self._told[node_id] = value
                 await self._server.write_attribute_value(node_id, value)

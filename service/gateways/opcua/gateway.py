@@ -1,23 +1,24 @@
 """The OPC UA gateway: follows the plant's state, and offers it as the nodes of a server."""
 
 import asyncio
+import gc
 import socket
-from pathlib import Path
 from typing import Final
 
 import structlog
 from asyncua import ua
-from asyncua.crypto.truststore import TrustStore
 from asyncua.crypto.validator import CertificateValidator, CertificateValidatorOptions
 from asyncua.server.event_generator import EventGenerator
 
 from service.configuration.gateways.opcua import OpcUaSettings
 from service.gateways.context import GatewayContext
+from service.gateways.opcua.account_watch import AccountWatch
 from service.gateways.opcua.address_space import OURS, PlantNodes
 from service.gateways.opcua.certificate import own_certificate
-from service.gateways.opcua.history import TrendHistory, utc
+from service.gateways.opcua.history import TrendHistory, tell_capabilities, utc
 from service.gateways.opcua.methods import PlantMethods
 from service.gateways.opcua.transport import BoundedServer
+from service.gateways.opcua.trusted_clients import TrustedClients
 from service.gateways.opcua.users import PlantRules, ServiceUsers
 from service.gateways.opcua.values import SEVERITIES
 from service.gateways.plant_state.figures import PlantChange
@@ -51,13 +52,17 @@ def run(context: GatewayContext) -> None:
 
 
 async def _serve(context: GatewayContext, settings: OpcUaSettings) -> None:
-    server = await _server(context, settings)
+    trusted = None if settings.trusted is None else TrustedClients(settings.trusted)
+    users = ServiceUsers(context.repository, context.settings.access, anonymous=settings.anonymous)
+    server = await _server(context, settings, users, trusted)
     nodes = PlantNodes(server)
     await nodes.begin()
     await PlantMethods(server, context.repository, context.settings).begin()
-    server.iserver.history_manager.set_storage(TrendHistory(context.repository, nodes.histories))
+    server.iserver.history_manager = TrendHistory(server.iserver, context.repository, nodes.histories)
+    await tell_capabilities(server)
     events = await _events(server)
     follower = context.follower()
+    watching = asyncio.create_task(AccountWatch(server, context.repository).run())
     is_known = False
     try:
         while not context.stop.is_set():
@@ -70,21 +75,31 @@ async def _serve(context: GatewayContext, settings: OpcUaSettings) -> None:
             if server.bserver is None and is_known:
                 context.tell(await _begun(settings, server))
             elif is_known:
-                context.tell(follower.problem)
+                problems = (follower.problem, None if trusted is None else trusted.problem())
+                context.tell("; ".join(filter(None, problems)) or None)
+            if watching.done():
+                watching.result()  # it has failed, and so the gateway does: the service starts it again
     finally:
+        watching.cancel()
         follower.close()
+        users.close()
         if server.bserver is not None:
             await server.stop()
 
 
-async def _server(context: GatewayContext, settings: OpcUaSettings) -> BoundedServer:
+async def _server(
+    context: GatewayContext, settings: OpcUaSettings, users: ServiceUsers, trusted: TrustedClients | None
+) -> BoundedServer:
     data_directory = context.settings.data_directory
     uri = f"urn:statorwatch:{installation_id(data_directory)}"
-    server = BoundedServer(
-        user_manager=ServiceUsers(context.repository, context.settings.access, anonymous=settings.anonymous)
-    )
+    server = BoundedServer(user_manager=users)
     server.product_uri, server.manufacturer_name = "urn:statorwatch", "StatorWatch"
-    await server.init()
+    gc.disable()  # the objects of the standard's nodes stay for good: it is in vain to look through them
+    try:
+        await server.init()
+    finally:
+        gc.freeze()
+        gc.enable()
     server.set_endpoint(f"opc.tcp://{settings.bind_address}:{settings.port}/")
     server.set_server_name("StatorWatch")
     await server.set_application_uri(uri)
@@ -95,8 +110,9 @@ async def _server(context: GatewayContext, settings: OpcUaSettings) -> BoundedSe
         certificate, key = own_certificate(data_directory, uri, str(settings.bind_address))
     await server.load_certificate(certificate)
     await server.load_private_key(key)
-    if settings.trusted is not None:
-        server.set_certificate_validator(await _validator(settings.trusted))
+    if trusted is not None:
+        options = CertificateValidatorOptions.TRUSTED_VALIDATION | CertificateValidatorOptions.PEER_CLIENT
+        server.set_certificate_validator(CertificateValidator(options, trusted))
     policies = list(ENCRYPTED)
     if settings.unencrypted:
         policies.append(ua.SecurityPolicyType.NoSecurity)
@@ -106,13 +122,6 @@ async def _server(context: GatewayContext, settings: OpcUaSettings) -> BoundedSe
         tokens.append(ua.AnonymousIdentityToken)
     server.set_identity_tokens(tokens)
     return server
-
-
-async def _validator(trusted: Path) -> CertificateValidator:
-    store = TrustStore([trusted], [])
-    await store.load()
-    options = CertificateValidatorOptions.TRUSTED_VALIDATION | CertificateValidatorOptions.PEER_CLIENT
-    return CertificateValidator(options, store)
 
 
 async def _begun(settings: OpcUaSettings, server: BoundedServer) -> str | None:

@@ -1,22 +1,46 @@
 """HistoryRead from the trends of the database."""
 
 import asyncio
-from collections.abc import Mapping
+import struct
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
-from typing import Any, Final
+from functools import partial
+from typing import Any, Final, Protocol
 
-from asyncua import ua
-from asyncua.server.history import HistoryStorageInterface
+import structlog
+from asyncua import Server, ua
+from asyncua.server.history import HistoryManager
+from asyncua.server.internal_server import InternalServer
+from sqlalchemy.exc import SQLAlchemyError
 
 from core.diagnosis.verdict import Verdict
-from service.storage import Repository
-from service.storage.records import Quantity, TrendPoint
+from service.storage import NotFoundError, Repository
+from service.storage.records import Page, Quantity, TrendPoint
+from service.timing.database_silence import database_trouble
+
+log = structlog.get_logger(__name__)
 
 MOST: Final = 1000
 """Values of one answer; the client asks for more with the point that it is given."""
 
 EPOCH: Final = datetime(1970, 1, 1, tzinfo=UTC)
 MICROSECOND: Final = timedelta(microseconds=1)
+SECOND: Final = timedelta(seconds=1)
+RESOLUTION_NS: Final = 1000
+LATEST_NS: Final = 2**63 - 1 - RESOLUTION_NS
+"""Later times are none that the database can be asked for; clients name the year 9999."""
+
+CONTINUATION: Final = struct.Struct("<qH")
+"""Where an answer goes on: time of the next value, and how many of that time were told already."""
+
+_CAPABILITIES: Final = "HistoryServerCapabilities_"
+ABLE: Final = ("AccessHistoryData",)
+UNABLE: Final = (
+    *("AccessHistoryEvents", "InsertData", "ReplaceData", "UpdateData", "DeleteRaw", "DeleteAtTime"),
+    *("InsertEvent", "ReplaceEvent", "UpdateEvent", "DeleteEvent", "InsertAnnotation"),
+)
+"""What clients may ask of histories, and what not."""
 
 
 def utc(time_ns: int) -> datetime:
@@ -24,78 +48,195 @@ def utc(time_ns: int) -> datetime:
     return EPOCH + timedelta(microseconds=time_ns // 1000)
 
 
-class TrendHistory(HistoryStorageInterface):  # type: ignore[misc]
-    """The values of records, oldest first. Nothing is stored here: the database has it already."""
+@dataclass(frozen=True, slots=True)
+class _Asked:
+    """What is asked for, in the direction of reading: all from start on, and what is at end with bounds only.
 
-    def __init__(self, repository: Repository, nodes: Mapping[ua.NodeId, tuple[str, Quantity]]) -> None:
-        super().__init__()
+    start, end: None where it is not named. with_bounds: whether the values at both ends are asked for, or
+    those next to them outside. next_ns, told: where it goes on, and how many of that time were told before.
+    """
+
+    start: datetime | None
+    end: datetime | None
+    newest_first: bool
+    with_bounds: bool
+    next_ns: int | None = None
+    told: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class _Domain:
+    """Where values are looked for: from_ns <= time < to_ns. lacks_start, lacks_end: a bound was not found."""
+
+    from_ns: int | None
+    to_ns: int | None
+    lacks_start: bool
+    lacks_end: bool
+
+
+class _Trend(Protocol):
+    """Asks for values of one figure of a motor."""
+
+    def __call__(
+        self, *, limit: int, from_ns: int | None = None, to_ns: int | None = None, descending: bool = False
+    ) -> Page[TrendPoint]: ...
+
+
+class TrendHistory(HistoryManager):  # type: ignore[misc]
+    """The values of records. Nothing is stored here: the database has it already."""
+
+    def __init__(
+        self, server: InternalServer, repository: Repository, nodes: Mapping[ua.NodeId, tuple[str, Quantity]]
+    ) -> None:
+        super().__init__(server)
         self._repository = repository
         self._nodes = nodes
 
-    async def init(self) -> None:
-        """Do nothing."""
+    async def read_history(self, params: ua.HistoryReadParameters) -> list[ua.HistoryReadResult]:
+        """Return the values of each node, or why there are none."""
+        if params.ReleaseContinuationPoints:  # they have all that is needed: nothing is kept here
+            return [ua.HistoryReadResult() for _ in params.NodesToRead]
+        return [await self._answer(params.HistoryReadDetails, asked) for asked in params.NodesToRead]
 
-    async def stop(self) -> None:
-        """Do nothing."""
+    async def _answer(self, details: Any, asked: ua.HistoryReadValueId) -> ua.HistoryReadResult:
+        try:
+            motor, quantity = self._place(details, asked.NodeId)
+            trend = partial(self._repository.trend, motor, quantity)
+            most = min(details.NumValuesPerNode or MOST, MOST)
+            return await asyncio.to_thread(_read, trend, _asked(details, asked.ContinuationPoint), most)
+        except ua.UaStatusCodeError as refused:
+            return _refused(refused.code)
+        except NotFoundError:
+            return _refused(ua.StatusCodes.BadNodeIdUnknown)
+        except SQLAlchemyError as error:
+            log.warning("a history cannot be read", error=database_trouble(error))
+            return _refused(ua.StatusCodes.BadResourceUnavailable)
 
-    async def new_historized_node(self, node_id: ua.NodeId, period: timedelta | None, count: int = 0) -> None:
-        """Do nothing: which nodes have a history is known."""
+    def _place(self, details: object, node: ua.NodeId) -> tuple[str, Quantity]:
+        """Return the motor and the figure whose values are asked for. Raises UaStatusCodeError."""
+        if node not in self.iserver.aspace:
+            raise ua.UaStatusCodeError(ua.StatusCodes.BadNodeIdUnknown)
+        place = self._nodes.get(node)
+        is_raw = isinstance(details, ua.ReadRawModifiedDetails) and not details.IsReadModified
+        if place is None or not is_raw:
+            raise ua.UaStatusCodeError(ua.StatusCodes.BadHistoryOperationUnsupported)
+        return place
 
-    async def save_node_value(self, node_id: ua.NodeId, datavalue: ua.DataValue) -> None:
-        """Do nothing."""
 
-    async def new_historized_event(
-        self, source_id: ua.NodeId, evtypes: Any, period: timedelta | None, count: int = 0
-    ) -> None:
-        """Do nothing."""
+async def tell_capabilities(server: Server) -> None:
+    """Have the server say what its histories are good for; the library leaves that open."""
+    values = {f"{name}Capability": ua.Variant(name in ABLE) for name in (*ABLE, *UNABLE)}
+    values["MaxReturnDataValues"] = ua.Variant(MOST, ua.VariantType.UInt32)
+    values["MaxReturnEventValues"] = ua.Variant(0, ua.VariantType.UInt32)
+    values["ServerTimestampSupported"] = ua.Variant(Value=False)
+    for name, value in values.items():
+        node_id = ua.NodeId(getattr(ua.ObjectIds, f"{_CAPABILITIES}{name}"))
+        await server.write_attribute_value(node_id, ua.DataValue(value))
 
-    async def save_event(self, event: Any) -> None:
-        """Do nothing."""
 
-    async def read_event_history(
-        self,
-        source_id: ua.NodeId,
-        start: datetime | None,
-        end: datetime | None,
-        nb_values: int,
-        evfilter: Any,
-    ) -> tuple[list[Any], datetime | None]:
-        """Return nothing: alarms have their history in the service."""
-        del source_id, start, end, nb_values, evfilter
-        return [], None
+def _read(trend: _Trend, asked: _Asked, most: int) -> ua.HistoryReadResult:
+    """Return values in their order, with bounds where they are asked for (OPC 10000-11, 4.6)."""
+    domain = _domain(trend, asked)
+    is_first = asked.next_ns is None
+    values = [_lacking(asked.start)] if domain.lacks_start and is_first else []
+    end = asked.told + most - len(values)
+    points = trend(
+        from_ns=domain.from_ns, to_ns=domain.to_ns, limit=end + 1, descending=asked.newest_first
+    ).items
+    values += [_value(point) for point in points[asked.told : end]]
+    rest = None
+    if len(points) > end:
+        rest = _continuation(points[end].recorded_ns, points[:end])
+    elif domain.lacks_end:
+        last_ns = points[-1].recorded_ns if points else _nanoseconds(asked.start) or 0
+        if len(values) < most:
+            values.append(_lacking(asked.end or utc(last_ns) + (-SECOND if asked.newest_first else SECOND)))
+        else:
+            rest = _continuation(last_ns, points)
+    return ua.HistoryReadResult(
+        StatusCode=ua.StatusCode(ua.StatusCodes.Good if points else ua.StatusCodes.GoodNoData),
+        ContinuationPoint=rest,
+        HistoryData=ua.HistoryData(DataValues=values),
+    )
 
-    async def read_node_history(
-        self, node_id: ua.NodeId, start: datetime | None, end: datetime | None, nb_values: int
-    ) -> tuple[list[ua.DataValue], datetime | None]:
-        """Return values from `start` to `end`, and the time of the first one that is left."""
-        place = self._nodes.get(node_id)
-        if place is None:
-            return [], None
-        motor, quantity = place
-        limit = min(nb_values, MOST) if nb_values > 0 else MOST
-        page = await asyncio.to_thread(
-            self._repository.trend,
-            motor,
-            quantity,
-            limit=limit + 1,
-            from_ns=_nanoseconds(start),
-            to_ns=_nanoseconds(end, included=True),
+
+def _asked(details: ua.ReadRawModifiedDetails, continuation: bytes | None) -> _Asked:
+    """Return what is asked for; newest first where the start is later than the end, or is not named."""
+    start, end = _named(details.StartTime), _named(details.EndTime)
+    newest_first = start is None or (end is not None and end < start)
+    if start is None:
+        start, end = end, None
+    asked = _Asked(start, end, newest_first, details.ReturnBounds and start is not None)
+    if not continuation:
+        return asked
+    try:
+        next_ns, told = CONTINUATION.unpack(continuation)
+    except struct.error as error:
+        raise ua.UaStatusCodeError(ua.StatusCodes.BadContinuationPointInvalid) from error
+    return replace(asked, next_ns=next_ns, told=told)
+
+
+def _domain(trend: _Trend, asked: _Asked) -> _Domain:
+    """Return where values are looked for; with bounds it reaches to the values next to both times."""
+    start_ns, end_ns = _nanoseconds(asked.start), _nanoseconds(asked.end)
+    has_end = asked.with_bounds or start_ns == end_ns
+    bounds: tuple[int | None, int | None] = (None, None)
+    if asked.with_bounds:
+        bounds = (
+            _bound(trend, start_ns, is_before=not asked.newest_first),
+            _bound(trend, end_ns, is_before=asked.newest_first),
         )
-        rest = utc(page.items[limit].recorded_ns) if len(page.items) > limit else None
-        return [_value(point) for point in page.items[:limit]], rest
+    start_ns = start_ns if bounds[0] is None else bounds[0]
+    end_ns = end_ns if bounds[1] is None else bounds[1]
+    if asked.newest_first:
+        from_ns, to_ns = (end_ns if has_end else _after(end_ns)), _after(start_ns)
+    else:
+        from_ns, to_ns = start_ns, (_after(end_ns) if has_end else end_ns)
+    if asked.next_ns is not None and asked.newest_first:
+        to_ns = min(asked.next_ns, LATEST_NS) + 1
+    elif asked.next_ns is not None:
+        from_ns = asked.next_ns
+    lacks_start, lacks_end = (asked.with_bounds and bound is None for bound in bounds)
+    return _Domain(from_ns, to_ns, lacks_start, lacks_end)
 
 
-def _nanoseconds(time: datetime | None, *, included: bool = False) -> int | None:
-    """Return a time in nanoseconds; None for the times by which clients say that they name none.
+def _bound(trend: _Trend, time_ns: int | None, *, is_before: bool) -> int | None:
+    """Return the time of the value at this time, or of the next one before or after it."""
+    if time_ns is None:
+        return None
+    if is_before:
+        points = trend(to_ns=_after(time_ns), limit=1, descending=True).items
+    else:
+        points = trend(from_ns=time_ns, limit=1).items
+    return points[0].recorded_ns // RESOLUTION_NS * RESOLUTION_NS if points else None
 
-    included: whether what is of that time belongs to it; clients know microseconds.
-    """
+
+def _after(time_ns: int | None) -> int | None:
+    """Return the next time that a client can name."""
+    return None if time_ns is None else time_ns + RESOLUTION_NS
+
+
+def _continuation(next_ns: int, told: Sequence[TrendPoint]) -> bytes:
+    return CONTINUATION.pack(next_ns, sum(point.recorded_ns == next_ns for point in told))
+
+
+def _named(time: datetime | None) -> datetime | None:
+    """Return a time in UTC; None for the one by which clients say that they name none."""
     if time is None:
         return None
     aware = time if time.tzinfo is not None else time.replace(tzinfo=UTC)
-    if aware <= EPOCH:
+    return None if aware <= ua.get_win_epoch() else aware
+
+
+def _nanoseconds(time: datetime | None) -> int | None:
+    """Return a time as the database can be asked for it."""
+    if time is None:
         return None
-    return ((aware - EPOCH) // MICROSECOND + int(included)) * 1000
+    return min(max((time - EPOCH) // MICROSECOND * RESOLUTION_NS, 0), LATEST_NS)
+
+
+def _refused(code: int) -> ua.HistoryReadResult:
+    return ua.HistoryReadResult(StatusCode=ua.StatusCode(code))
 
 
 def _value(point: TrendPoint) -> ua.DataValue:
@@ -108,3 +249,9 @@ def _value(point: TrendPoint) -> ua.DataValue:
         SourceTimestamp=time,
         ServerTimestamp=time,
     )
+
+
+def _lacking(time: datetime | None) -> ua.DataValue:
+    """Return what stands for a bound that there is not."""
+    status = ua.StatusCode(ua.StatusCodes.BadBoundNotFound)
+    return ua.DataValue(ua.Variant(), StatusCode=status, SourceTimestamp=time, ServerTimestamp=time)

@@ -12,7 +12,7 @@ from sqlalchemy.exc import SQLAlchemyError
 from service.access.permissions import Permission
 from service.configuration.settings import Settings
 from service.gateways.opcua.address_space import OURS
-from service.gateways.opcua.users import CALLER
+from service.gateways.opcua.users import CALLER, PlantUser, actor_of, has_changed
 from service.storage import NotFoundError, Repository, StorageError
 from service.storage.records import Actor
 from service.timing.database_silence import database_trouble
@@ -21,6 +21,8 @@ log = structlog.get_logger(__name__)
 
 LONGEST: Final = 500
 TEXT: Final = ua.VariantType.String
+
+Work = Callable[[Actor], list[ua.Variant]]
 
 
 class PlantMethods:
@@ -62,7 +64,7 @@ class PlantMethods:
             )
             return [ua.Variant(made.id, TEXT)]
 
-        return await _allowed(Permission.TRIGGER, request)
+        return await self._allowed(Permission.TRIGGER, request)
 
     async def _acknowledge(self, _parent: ua.NodeId, alarm: ua.Variant, comment: ua.Variant) -> object:
         def acknowledge(by: Actor) -> list[ua.Variant]:
@@ -72,25 +74,30 @@ class PlantMethods:
             )
             return []
 
-        return await _allowed(Permission.ACKNOWLEDGE, acknowledge)
+        return await self._allowed(Permission.ACKNOWLEDGE, acknowledge)
 
+    async def _allowed(self, permission: Permission, work: Work) -> object:
+        """Return what the work gives, or the status that tells the client why there is nothing."""
+        caller = CALLER.get()
+        try:
+            return await asyncio.to_thread(self._done, caller, permission, work)
+        except NotFoundError as error:
+            log.info("a method was refused", reason=str(error))
+            return ua.StatusCode(ua.StatusCodes.BadNotFound)
+        except StorageError as error:
+            log.info("a method was refused", reason=str(error))
+            return ua.StatusCode(ua.StatusCodes.BadInvalidState)
+        except SQLAlchemyError as error:
+            log.warning("a method failed", error=database_trouble(error))
+            return ua.StatusCode(ua.StatusCodes.BadResourceUnavailable)
 
-async def _allowed(permission: Permission, work: Callable[[Actor], list[ua.Variant]]) -> object:
-    """Return what the work gives, or the status that tells the client why there is nothing."""
-    caller = CALLER.get()
-    if caller is None or caller.actor is None or not caller.may(permission):
-        return ua.StatusCode(ua.StatusCodes.BadUserAccessDenied)
-    try:
-        return await asyncio.to_thread(work, caller.actor)
-    except NotFoundError as error:
-        log.info("a method was refused", reason=str(error))
-        return ua.StatusCode(ua.StatusCodes.BadNotFound)
-    except StorageError as error:
-        log.info("a method was refused", reason=str(error))
-        return ua.StatusCode(ua.StatusCodes.BadInvalidState)
-    except SQLAlchemyError as error:
-        log.warning("a method failed", error=database_trouble(error))
-        return ua.StatusCode(ua.StatusCodes.BadResourceUnavailable)
+    def _done(self, caller: PlantUser | None, permission: Permission, work: Work) -> object:
+        """Do the work for a caller whose account allows it now."""
+        if caller is None or caller.account is None or not caller.may(permission):
+            return ua.StatusCode(ua.StatusCodes.BadUserAccessDenied)
+        if has_changed(self._repository, caller.account):
+            return ua.StatusCode(ua.StatusCodes.BadUserAccessDenied)
+        return work(actor_of(caller.account))
 
 
 def _argument(name: str, meaning: str) -> ua.Argument:

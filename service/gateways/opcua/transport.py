@@ -1,18 +1,43 @@
-"""The server of asyncua with bounds for each connection.
+"""The server of asyncua with bounds for each connection, and with channels that are what the settings say.
 
-The library keeps what has come of a chunk, however large its header says that it is.
+The library keeps what has come of a chunk, however large its header says that it is. It holds sessions over
+channels that are not offered, and takes a client's word for whose certificate the channel is. It asks who
+a client is while all others wait, and lets connections without a session keep out others.
 """
 
 import asyncio
+import struct
+from collections.abc import Sequence
+from typing import Any, Final
 
 import structlog
-from asyncua import Server
+from asyncua import Server, ua
+from asyncua.common.utils import ServiceError
 from asyncua.server.binary_server_asyncio import BinaryServer, OPCUAProtocol
+from asyncua.server.internal_session import InternalSession
+from asyncua.server.uaprocessor import UaProcessor
+from asyncua.ua.ua_binary import struct_from_binary, uatcp_to_binary
+
+from service.gateways.opcua.users import PlantUser, logged_in
 
 log = structlog.get_logger(__name__)
 
 LARGEST_UNFINISHED = 2 * 65_535
 """Bytes of a chunk that is not whole yet: twice the largest one that the server agrees to take."""
+
+SILENT_S: Final = 5.0
+"""A connection on which nobody has logged in ends after so long; one whose login is looked at may wait."""
+
+LOGIN_LOOK_S: Final = 0.5
+"""Between two looks whether such a login is over."""
+
+CREATE: Final = ua.NodeId(ua.ObjectIds.CreateSessionRequest_Encoding_DefaultBinary)
+ACTIVATE: Final = ua.NodeId(ua.ObjectIds.ActivateSessionRequest_Encoding_DefaultBinary)
+REGISTER: Final = (
+    ua.NodeId(ua.ObjectIds.RegisterServerRequest_Encoding_DefaultBinary),
+    ua.NodeId(ua.ObjectIds.RegisterServer2Request_Encoding_DefaultBinary),
+)
+"""Requests of other servers, to be listed by a discovery server: anybody's, and kept for good."""
 
 
 class BoundedServer(Server):  # type: ignore[misc]
@@ -33,6 +58,19 @@ class BoundedServer(Server):  # type: ignore[misc]
             await self.iserver.stop()
             raise
 
+    def sessions(self) -> Sequence[InternalSession]:
+        """Return the sessions of clients, also of those whose connection was lost."""
+        return list(self.iserver._external_sessions.values())  # noqa: SLF001 - the library has no other list
+
+    async def end_session(self, session: InternalSession) -> None:
+        """End a session with its subscriptions, and the connection that it has."""
+        await session.close_session(delete_subs=True)
+        if self.bserver is None:
+            return
+        for connection in list(self.bserver.clients):
+            if connection.processor.session is session:
+                connection.transport.close()
+
 
 class _BoundedBinaryServer(BinaryServer):  # type: ignore[misc]
     def _make_protocol(self) -> OPCUAProtocol:
@@ -47,6 +85,21 @@ class _BoundedBinaryServer(BinaryServer):  # type: ignore[misc]
 
 class _BoundedProtocol(OPCUAProtocol):  # type: ignore[misc]
     _buffer: bytes
+    processor: UaProcessor | None
+
+    @property
+    def is_activated(self) -> bool:
+        """Return whether somebody has logged in."""
+        session = None if self.processor is None else self.processor.session
+        return session is not None and session.is_activated()
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        if len(self.clients) >= self.iserver.max_connections:
+            self._make_room()
+        super().connection_made(transport)
+        if self.processor is not None:
+            self.processor = _StrictProcessor(self.iserver, self.transport, self.limits)
+            self.processor.set_policies(self.policies)
 
     def data_received(self, data: bytes) -> None:
         super().data_received(data)
@@ -56,3 +109,94 @@ class _BoundedProtocol(OPCUAProtocol):  # type: ignore[misc]
         self._buffer = b""
         if isinstance(self.transport, asyncio.Transport):
             self.transport.abort()
+
+    def _make_room(self) -> None:
+        """End the connection that has waited longest without a login, first of those without a session."""
+        waiting = [one for one in self.clients if not one.is_activated]  # in the order in which they came
+        if waiting:
+            longest = min(waiting, key=lambda one: one.processor.session is not None)
+            log.debug("an OPC UA client without a login gives way", client=str(longest.peer_name))
+            self.clients.remove(longest)
+            longest.transport.abort()
+
+    async def _activation_watchdog(self) -> None:
+        """Close a connection on which nobody logs in. The library's closes also those that wait for us."""
+        await asyncio.sleep(SILENT_S)
+        while isinstance(self.processor, _StrictProcessor) and self.processor.is_logging_in:
+            await asyncio.sleep(LOGIN_LOOK_S)
+        if not self.is_activated and self.transport is not None:
+            log.debug("nobody has logged in on a connection of OPC UA", client=str(self.peer_name))
+            self.transport.close()
+
+
+class _StrictProcessor(UaProcessor):  # type: ignore[misc]
+    """Answers over channels that are offered; over others it only tells which ones are."""
+
+    session: InternalSession | None
+    is_logging_in = False
+    """Whether a name and a password are looked at."""
+
+    def set_policies(self, policies: Any) -> None:
+        super().set_policies(policies)
+        self._offered = policies
+
+    async def close(self) -> None:
+        """Answer no request of a connection that ended: what changes then waits for its client."""
+        self._publish_requests.clear()
+        await super().close()
+
+    async def process(self, header: Any, body: Any) -> bool:
+        try:
+            return bool(await super().process(header, body))
+        except ua.UaError as error:
+            if header.MessageType != ua.MessageType.SecureOpen:
+                raise
+            log.info("an OPC UA client opens no channel", client=str(self.name), reason=str(error))
+            refusal = ua.ErrorMessage(ua.StatusCode(ua.StatusCodes.BadSecurityPolicyRejected), str(error))
+            self._transport.write(uatcp_to_binary(ua.MessageType.Error, refusal))
+            return False
+
+    async def _process_message(self, typeid: Any, requesthdr: Any, seqhdr: Any, body: Any) -> Any:
+        if typeid in REGISTER:
+            raise ServiceError(ua.StatusCodes.BadServiceUnsupported)
+        if typeid in (CREATE, ACTIVATE):
+            self._check_channel()
+        if typeid == CREATE:
+            self._check_certificate(struct_from_binary(ua.CreateSessionParameters, body.copy()))
+        user = None
+        if typeid == ACTIVATE:
+            wanted = struct_from_binary(ua.ActivateSessionParameters, body.copy())
+            user = await self._user(requesthdr.AuthenticationToken, wanted.UserIdentityToken)
+        with logged_in(user):
+            return await super()._process_message(typeid, requesthdr, seqhdr, body)
+
+    async def _user(self, session_token: ua.NodeId, identity: object) -> PlantUser | None:
+        """Return whose name and password a client shows; None where the library refuses it, or asks for none.
+
+        Only this connection waits meanwhile: the library takes its next message when this one is done with.
+        """
+        session = self.session or self.iserver.lookup_external_session(session_token)
+        if session is None or not isinstance(identity, ua.UserNameIdentityToken) or not identity.UserName:
+            return None
+        try:
+            name, password = self.iserver.decrypt_user_token(session, identity)
+        except (ValueError, TypeError, struct.error):
+            return None
+        self.is_logging_in = True
+        try:
+            user: PlantUser = await self.iserver.user_manager.log_in(name, password or "")
+        finally:
+            self.is_logging_in = False
+        return user
+
+    def _check_channel(self) -> None:
+        policy = self._connection.security_policy
+        if not any(offered.matches(policy.URI, policy.Mode) for offered in self._offered):
+            raise ServiceError(ua.StatusCodes.BadSecurityPolicyRejected)
+
+    def _check_certificate(self, session: ua.CreateSessionParameters) -> None:
+        """Refuse a client that names no certificate, or another's: it is asked for whether it is trusted."""
+        policy = self._connection.security_policy
+        is_secured = policy.Mode != ua.MessageSecurityMode.None_
+        if is_secured and not (session.ClientCertificate or b"").startswith(policy.peer_certificate):
+            raise ServiceError(ua.StatusCodes.BadCertificateInvalid)

@@ -1,11 +1,16 @@
 """Who a client is, and what it may do: the users of the service, with their roles."""
 
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import structlog
+from asyncua import ua
+from asyncua.common.utils import ServiceError
 from asyncua.crypto.permission_rules import SimpleRoleRuleset, User, UserRole
 from asyncua.server.user_managers import UserManager
 from sqlalchemy.exc import SQLAlchemyError
@@ -13,8 +18,10 @@ from sqlalchemy.exc import SQLAlchemyError
 from service.access.logins import LoginLockedError, LoginRefusedError, account_of, attempt, check_password
 from service.access.permissions import Permission, permissions_of
 from service.configuration.access import AccessSettings
+from service.gateways.opcua.login_threads import LoginThreads
 from service.storage import NotFoundError, Repository
 from service.storage.records import Actor
+from service.storage.records import User as Account
 from service.timing.database_silence import database_trouble
 
 log = structlog.get_logger(__name__)
@@ -25,19 +32,43 @@ ADDRESS = "opcua"
 
 @dataclass
 class PlantUser(User):  # type: ignore[misc]
-    """Somebody at a session. actor: None for somebody who has not said who it is."""
+    """Somebody at a session. account: as it was at the login; None for who has not said who it is."""
 
-    actor: Actor | None = None
+    account: Account | None = None
 
     def may(self, permission: Permission) -> bool:
         """Return whether the roles allow this. Somebody unknown may look, where the settings say so."""
-        if self.actor is None:
+        if self.account is None:
             return permission is Permission.VIEW
-        return permission in permissions_of(self.actor.roles)
+        return permission in permissions_of(self.account.roles)
+
+
+def actor_of(account: Account) -> Actor:
+    """Return who does what is asked for with an account."""
+    return Actor(account.name, ADDRESS, account.roles)
+
+
+def has_changed(repository: Repository, account: Account) -> bool:
+    """Return whether an account is deleted, disabled, or has other roles or another password by now.
+
+    Raises SQLAlchemyError where the database does not answer.
+    """
+    try:
+        return _kept(repository.user(account.name)) != _kept(account)
+    except NotFoundError:
+        return True
+
+
+def _kept(account: Account) -> tuple[object, ...]:
+    """Return what stays the same as long as a session lasts. created_ns: others may get the name later."""
+    return account.created_ns, account.roles, account.disabled, account.password_set_ns
 
 
 CALLER: ContextVar[PlantUser | None] = ContextVar("caller", default=None)
 """The user of the request that is answered."""
+
+LOGGED_IN: ContextVar[PlantUser | None] = ContextVar("logged in", default=None)
+"""Whose name and password were looked at for the session that is activated."""
 
 
 class PlantRules(SimpleRoleRuleset):  # type: ignore[misc]
@@ -56,6 +87,22 @@ class ServiceUsers(UserManager):  # type: ignore[misc]
         self._repository = repository
         self._settings = settings
         self._anonymous = anonymous
+        self._threads = LoginThreads()
+
+    async def log_in(self, name: str, password: str) -> PlantUser:
+        """Return whose name and password it is. Raises ServiceError."""
+        try:
+            account = await self._threads.run(partial(self._account, account_of(name), password))
+        except (LoginLockedError, LoginRefusedError) as refused:
+            log.warning("a client is not let in", reason=str(refused))
+            raise ServiceError(ua.StatusCodes.BadUserAccessDenied) from refused
+        except SQLAlchemyError as error:
+            log.warning("a client is not let in", reason=database_trouble(error))
+            raise ServiceError(ua.StatusCodes.BadResourceUnavailable) from error
+        user = PlantUser(UserRole.User, account.name, account)
+        if not user.may(Permission.VIEW):
+            raise ServiceError(ua.StatusCodes.BadUserAccessDenied)
+        return user
 
     def get_user(
         self,
@@ -64,24 +111,37 @@ class ServiceUsers(UserManager):  # type: ignore[misc]
         password: str | None = None,
         certificate: Any = None,
     ) -> User | None:
-        """Return who it is; None where nobody may come in so."""
-        del iserver, certificate
+        """Return who it is; None where nobody may come in so. All clients wait for the answer."""
+        del iserver, password, certificate
         if username is None:
             return PlantUser(UserRole.User) if self._anonymous else None
-        try:
-            actor = self._logged_in(account_of(username), password or "")
-        except (LoginLockedError, LoginRefusedError, NotFoundError) as refused:
-            log.warning("a client is not let in", reason=str(refused))
-            return None
-        except SQLAlchemyError as error:
-            log.warning("a client is not let in", reason=database_trouble(error))
-            return None
-        user = PlantUser(UserRole.User, actor.name, actor)
-        return user if user.may(Permission.VIEW) else None
+        return LOGGED_IN.get()
 
-    def _logged_in(self, account: str, password: str) -> Actor:
+    def close(self) -> None:
+        """Look at no more logins."""
+        self._threads.close()
+
+    def _account(self, name: str, password: str) -> Account:
         now_ns = time.time_ns()
-        attempt(self._repository, self._settings, account, ADDRESS, now_ns=now_ns)
-        check_password(self._repository, account, password, ADDRESS, now_ns=now_ns)
-        found = self._repository.user(account)
-        return Actor(found.name, ADDRESS, found.roles)
+        attempt(self._repository, self._settings, name, ADDRESS, now_ns=now_ns)
+        account = self._known(name)  # before its password, which may be changed meanwhile
+        check_password(self._repository, name, password, ADDRESS, now_ns=now_ns)
+        if account is None:
+            raise LoginRefusedError
+        return account
+
+    def _known(self, name: str) -> Account | None:
+        try:
+            return self._repository.user(name)
+        except NotFoundError:
+            return None
+
+
+@contextmanager
+def logged_in(user: PlantUser | None) -> Iterator[None]:
+    """Have a session that is activated in the block belong to this user, whose password was right."""
+    token = LOGGED_IN.set(user)
+    try:
+        yield
+    finally:
+        LOGGED_IN.reset(token)

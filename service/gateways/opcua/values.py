@@ -1,4 +1,4 @@
-"""From what is told of motors and relays to OPC UA values, with status and the record's time."""
+"""From what is told of motors and relays to OPC UA values, with status and the time of each."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -8,7 +8,7 @@ from asyncua import ua
 
 from service.gateways.opcua.history import EPOCH, utc
 from service.gateways.plant_state.device_health import DeviceHealth
-from service.gateways.plant_state.figures import MotorFigures, Quality, RelayFigures
+from service.gateways.plant_state.figures import MotorFigures, PlantState, Quality, RelayFigures
 from service.gateways.plant_state.running_state import RunningState
 from service.storage.records import Quantity
 from service.storage.states import AlarmPriority
@@ -41,15 +41,9 @@ SEVERITIES: Final[Mapping[AlarmPriority, int]] = {
     AlarmPriority.LOW: 300,
 }
 DOUBLE, TEXT, TIME = ua.VariantType.Double, ua.VariantType.String, ua.VariantType.DateTime
+FLAG, NUMBER = ua.VariantType.Boolean, ua.VariantType.UInt32
 
-
-INITIAL: Final[Mapping[ua.VariantType, object]] = {
-    DOUBLE: 0.0,
-    TEXT: "",
-    TIME: EPOCH,
-    ua.VariantType.Boolean: False,
-    ua.VariantType.UInt32: 0,
-}
+INITIAL: Final[Mapping[ua.VariantType, object]] = {DOUBLE: 0.0, TEXT: "", TIME: EPOCH, FLAG: False, NUMBER: 0}
 """What a node is made with; its value is written before any client comes."""
 
 
@@ -92,32 +86,37 @@ MOTOR_VARIABLES: Final = (
     MotorVariable("DetectionLimit", DOUBLE, "of the latest record", lambda one: one.detection_limit),
     MotorVariable("Load", DOUBLE, "over the rated load", lambda one: one.load_level),
     MotorVariable("Rotor", TEXT, "watch or fault", lambda one: one.rotor and str(one.rotor)),
-    MotorVariable("Stale", ua.VariantType.Boolean, "the latest record is too old", lambda one: one.stale),
+    MotorVariable("Stale", FLAG, "the latest record is too old", lambda one: one.stale),
     MotorVariable("AsOf", TIME, "time of the latest record", lambda one: _time(one.as_of_ns)),
     MotorVariable("Since", TIME, "since when the state is so", lambda one: _time(one.since_ns)),
     MotorVariable("Advice", TEXT, "what to do", lambda one: one.advice),
     MotorVariable("Reasons", TEXT, "why", lambda one: "; ".join(one.reasons)),
-    MotorVariable("Alarms", ua.VariantType.UInt32, "that call for somebody", lambda one: one.alarms),
+    MotorVariable("Alarms", NUMBER, "that call for somebody", lambda one: one.alarms),
     MotorVariable("Priority", TEXT, "of the most urgent alarm", lambda one: str(one.priority or "")),
     MotorVariable("QualityReason", TEXT, "why values are not good", lambda one: one.quality_reason),
 )  # fmt: skip
+BESIDE_RECORDS: Final = frozenset({"Stale", "Alarms", "Priority", "QualityReason"})
+"""Variables that are no figures of a record: each has the time at which it was read to be so."""
+
 HISTORIES: Final[Mapping[str, Quantity]] = {"FaultLevel": "mu_f", "Load": "load_level"}
 """Variables with a history, and the quantity of the trend."""
 
 
-def motor_value(variable: MotorVariable, motor: MotorFigures) -> ua.DataValue:
+def motor_value(variable: MotorVariable, motor: MotorFigures, state: PlantState) -> ua.DataValue:
     """Return the value of a motor's variable; one that is not known is bad, or an empty text."""
     value = variable.read(motor)
-    status = STATUS[motor.quality]
     if value is None and variable.kind is TEXT:
         value = ""
+    if variable.name in BESIDE_RECORDS:
+        quality = Quality.GOOD if state.is_current else Quality.UNCERTAIN
+        return _told_always(ua.Variant(value, variable.kind), quality, state.read_ns)
     if value is None:
         return ua.DataValue(
             StatusCode=ua.StatusCode(ua.StatusCodes.BadNoData), SourceTimestamp=_time(motor.as_of_ns)
         )
     return ua.DataValue(
         ua.Variant(value, variable.kind),
-        StatusCode=ua.StatusCode(status),
+        StatusCode=ua.StatusCode(STATUS[motor.quality]),
         SourceTimestamp=_time(motor.as_of_ns),
     )
 

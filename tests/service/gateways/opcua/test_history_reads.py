@@ -1,0 +1,368 @@
+"""HistoryRead: values of a motor's records in both orders, in answers of bounded size, and refusals."""
+
+import asyncio
+from collections.abc import Awaitable, Callable, Iterator, Sequence
+from datetime import UTC, datetime, timedelta
+from itertools import chain
+from pathlib import Path
+from typing import Any
+
+import pytest
+from asyncua import Client, ua
+from sqlalchemy import insert, inspect, select
+from sqlalchemy.orm import Session
+
+from core.diagnosis.verdict import Diagnosis
+from service.configuration.settings import Settings, sqlite_url
+from service.gateways.opcua.history import MOST
+from service.recording_store.folder import FolderStore
+from service.storage import Repository, connect
+from service.storage.models import DiagnosisRow, JobRow
+from testing.service.diagnosed import add_diagnosed
+from testing.service.gateways import running_gateways
+from testing.service.job_runner import register_runner
+from testing.service.plants import NOW_NS, SECOND_NS, fault, undiagnosable
+from tests.service.gateways.opcua.test_opcua import PUMP, looking, node
+from tests.service.gateways.settings import settings_of
+
+LEVEL, LOAD = f"{PUMP}/FaultLevel", f"{PUMP}/Load"
+FIRST = datetime.fromtimestamp(NOW_NS // SECOND_NS, UTC)
+SECOND = timedelta(seconds=1)
+LONG_AGO, FAR = datetime(1960, 1, 1, tzinfo=UTC), datetime(9999, 12, 31, 23, 59, 59, tzinfo=UTC)
+
+
+@pytest.fixture
+def settings(repository: Repository, tmp_path: Path) -> Iterator[Settings]:
+    """Of a server at which anybody may look, without encryption."""
+    chosen = settings_of("opcua", tmp_path, anonymous=True, unencrypted=True)
+    with running_gateways(chosen):
+        yield chosen
+
+
+def keep(
+    repository: Repository, tmp_path: Path, diagnoses: Sequence[Diagnosis], times_s: Sequence[int] = ()
+) -> None:
+    """Have records of PUMP-A1 diagnosed so: one each second, or at these times."""
+    register_runner(repository)
+    store = FolderStore(tmp_path / "recordings")
+    for number, diagnosis in enumerate(diagnoses):
+        at_s = times_s[number] if times_s else number
+        add_diagnosed(repository, store, diagnosis, NOW_NS + at_s * SECOND_NS, name=f"E{number}")
+
+
+def repeat(tmp_path: Path, times: int) -> None:
+    """Have the database keep the one diagnosis that it has so often more, each of a second later."""
+    with Session(connect(sqlite_url(tmp_path))) as session, session.begin():
+        job, diagnosis = (_values(session.scalars(select(row)).one()) for row in (JobRow, DiagnosisRow))
+        numbers = range(1, times + 1)
+        session.execute(insert(JobRow), [job | {"id": f"job {number}"} for number in numbers])
+        more = [
+            {"id": f"diagnosis {number}", "job_id": f"job {number}", "mu_f": number / 10**5}
+            | {"recorded_ns": NOW_NS + number * SECOND_NS}
+            for number in numbers
+        ]
+        session.execute(insert(DiagnosisRow), [diagnosis | one for one in more])
+
+
+def _values(row: object) -> dict[str, Any]:
+    return {column.key: getattr(row, column.key) for column in inspect(type(row)).mapper.column_attrs}
+
+
+def details_of(
+    start: datetime | None,
+    end: datetime | None,
+    most: int = 0,
+    *,
+    modified: bool = False,
+    bounds: bool = False,
+) -> ua.ReadRawModifiedDetails:
+    nobody = ua.get_win_epoch()
+    return ua.ReadRawModifiedDetails(
+        IsReadModified=modified,
+        StartTime=start or nobody,
+        EndTime=end or nobody,
+        NumValuesPerNode=most,
+        ReturnBounds=bounds,
+    )
+
+
+def answer(settings: Settings, path: str, details: object, continuation: bytes | None = None) -> Any:
+    """One answer of the server."""
+
+    async def ask(client: Client) -> Any:
+        return await node(client, path).history_read(details, continuation)
+
+    return looking(settings, ask)
+
+
+def answers(settings: Settings, path: str, details: object) -> list[list[float]]:
+    """The values of all answers that a client is given who asks on as long as there is more."""
+
+    async def ask(client: Client) -> list[list[float]]:
+        found: list[list[float]] = []
+        continuation = None
+        while not found or continuation is not None:
+            result = await node(client, path).history_read(details, continuation)
+            result.StatusCode.check()
+            found.append([one.Value.Value for one in result.HistoryData.DataValues])
+            continuation = result.ContinuationPoint
+        return found
+
+    return looking(settings, lambda client: asyncio.wait_for(ask(client), 60))  # type: ignore[no-any-return] # of any client
+
+
+def values(settings: Settings, start: datetime | None, end: datetime | None, most: int = 0) -> list[float]:
+    """The levels of the first answer."""
+    (first, *_) = answers(settings, LEVEL, details_of(start, end, most))
+    return first
+
+
+def refusal(settings: Settings, ask: Callable[[Client], Awaitable[Any]]) -> str:
+    """The status code with which a client is refused."""
+    with pytest.raises(ua.UaStatusCodeError) as refused:
+        looking(settings, ask)
+    return type(refused.value).__name__
+
+
+def test_load_and_level_have_their_records_with_times(
+    repository: Repository, tmp_path: Path, settings: Settings
+) -> None:
+    keep(repository, tmp_path, [fault(0.01), undiagnosable(), fault(0.02)])
+
+    def told(path: str) -> list[tuple[float | None, int, datetime]]:
+        found = answer(settings, path, details_of(LONG_AGO, FAR)).HistoryData.DataValues
+        return [(one.Value.Value, one.StatusCode.value, one.SourceTimestamp) for one in found]
+
+    times = [FIRST, FIRST + SECOND, FIRST + 2 * SECOND]
+    good, none = ua.StatusCodes.Good, ua.StatusCodes.BadNoData
+    assert told(LEVEL) == list(zip([0.01, None, 0.02], [good, none, good], times, strict=True))
+    assert told(LOAD) == list(zip([0.48, None, 0.48], [good, none, good], times, strict=True))
+
+
+def test_more_than_a_thousand_values_come_in_answers_of_a_thousand(
+    repository: Repository, tmp_path: Path, settings: Settings
+) -> None:
+    keep(repository, tmp_path, [fault(0.0)])
+    repeat(tmp_path, MOST + 2)
+    levels = [number / 10**5 for number in range(MOST + 3)]
+    oldest_first = answers(settings, LEVEL, details_of(FIRST, FAR))
+    assert [len(one) for one in oldest_first] == [MOST, 3]
+    assert list(chain(*oldest_first)) == levels
+    newest_first = answers(settings, LEVEL, details_of(FAR, LONG_AGO))
+    assert [len(one) for one in newest_first] == [MOST, 3]
+    assert list(chain(*newest_first)) == levels[::-1]
+    assert len(values(settings, FIRST, FAR, 5 * MOST)) == MOST
+
+
+def test_the_newest_come_first_where_the_start_is_later_than_the_end_or_not_named(
+    repository: Repository, tmp_path: Path, settings: Settings
+) -> None:
+    keep(repository, tmp_path, [fault(level / 100) for level in range(1, 6)])
+    newest_first = [0.05, 0.04, 0.03, 0.02, 0.01]
+    last = FIRST + 4 * SECOND
+    assert values(settings, last, LONG_AGO) == newest_first
+    assert values(settings, last - SECOND, FIRST + SECOND) == [0.04, 0.03]
+    assert values(settings, None, last, 2) == [0.05, 0.04]
+    assert values(settings, None, last - SECOND, 2) == [0.04, 0.03]
+    assert values(settings, FIRST, None, 2) == [0.01, 0.02]
+    assert answers(settings, LEVEL, details_of(None, last, 2)) == [[0.05, 0.04], [0.03, 0.02], [0.01]]
+    assert answers(settings, LEVEL, details_of(FIRST, FAR, 2)) == [[0.01, 0.02], [0.03, 0.04], [0.05]]
+
+
+def test_a_window_has_what_is_in_it_alone(repository: Repository, tmp_path: Path, settings: Settings) -> None:
+    keep(repository, tmp_path, [fault(level / 100) for level in range(1, 6)])
+    assert values(settings, FIRST + SECOND, FIRST + 3 * SECOND) == [0.02, 0.03]
+    assert values(settings, FIRST + 0.5 * SECOND, FIRST + 2.5 * SECOND) == [0.02, 0.03]
+    assert values(settings, FIRST + SECOND, FIRST + SECOND) == [0.02]
+    assert values(settings, LONG_AGO, FIRST + SECOND) == [0.01]
+    assert values(settings, FIRST + 4 * SECOND, FAR) == [0.05]
+    nothing = answer(settings, LEVEL, details_of(FIRST + 5 * SECOND, FAR))
+    assert nothing.StatusCode.value == ua.StatusCodes.GoodNoData
+    assert nothing.HistoryData.DataValues == []
+
+
+def test_each_of_several_records_of_one_time_is_told_once(
+    repository: Repository, tmp_path: Path, settings: Settings
+) -> None:
+    levels = [0.01, 0.02, 0.03, 0.04, 0.05]
+    keep(repository, tmp_path, [fault(level) for level in levels], [0, 1, 1, 1, 2])
+    for start, end in ((FIRST, FAR), (FAR, LONG_AGO)):
+        for most in (1, 2, 3, 4):
+            told = answers(settings, LEVEL, details_of(start, end, most))
+            assert sorted(chain(*told)) == levels, (start, most)
+            assert {len(one) for one in told[:-1]} == {most}
+
+
+def test_what_has_no_history_is_refused(settings: Settings) -> None:
+    raw = details_of(FIRST, FAR)
+
+    def read(path: str, details: object = raw) -> Callable[[Client], Awaitable[None]]:
+        async def ask(client: Client) -> None:
+            (await node(client, path).history_read(details)).StatusCode.check()
+
+        return ask
+
+    async def events(client: Client) -> None:
+        await node(client, PUMP).read_event_history()
+
+    unsupported = "BadHistoryOperationUnsupported"
+    assert refusal(settings, read("motor/NOBODY/FaultLevel")) == "BadNodeIdUnknown"
+    assert refusal(settings, read(f"{PUMP}/State")) == unsupported
+    assert refusal(settings, read(PUMP)) == unsupported
+    assert refusal(settings, read("relay/A1_SEL710/Link")) == unsupported
+    assert refusal(settings, read(LEVEL, details_of(FIRST, FAR, modified=True))) == unsupported
+    assert refusal(settings, read(LEVEL, ua.ReadAtTimeDetails(ReqTimes=[FIRST]))) == unsupported
+    assert refusal(settings, events) == unsupported
+
+
+def test_a_node_that_is_refused_leaves_others_their_answers(
+    repository: Repository, tmp_path: Path, settings: Settings
+) -> None:
+    keep(repository, tmp_path, [fault(0.01)])
+    paths = (LEVEL, f"{PUMP}/State", "motor/NOBODY/Load", LOAD)
+
+    async def ask(client: Client) -> list[Any]:
+        asked = [ua.HistoryReadValueId(NodeId=node(client, path).nodeid, IndexRange="") for path in paths]
+        request = ua.HistoryReadParameters(
+            HistoryReadDetails=details_of(FIRST, FAR), ReleaseContinuationPoints=False, NodesToRead=asked
+        )
+        return list(await client.uaclient.history_read(request))
+
+    found = looking(settings, ask)
+    assert [one.StatusCode.name for one in found] == [
+        "Good",
+        "BadHistoryOperationUnsupported",
+        "BadNodeIdUnknown",
+        "Good",
+    ]
+    level, _, _, load = found
+    assert [one.Value.Value for one in level.HistoryData.DataValues] == [0.01]
+    assert [one.Value.Value for one in load.HistoryData.DataValues] == [0.48]
+
+
+def test_a_motor_without_records_has_no_history(settings: Settings) -> None:
+    for details in (details_of(FIRST, FAR), details_of(FAR, FIRST), details_of(None, FAR, 5)):
+        found = answer(settings, LOAD, details)
+        assert found.StatusCode.value == ua.StatusCodes.GoodNoData
+        assert (found.HistoryData.DataValues, found.ContinuationPoint) == ([], None)
+
+
+def test_a_continuation_point_is_the_servers_own_or_refused(
+    repository: Repository, tmp_path: Path, settings: Settings
+) -> None:
+    keep(repository, tmp_path, [fault(0.01), fault(0.02)])
+    details = details_of(FIRST, FAR, 1)
+    assert answer(settings, LEVEL, details).ContinuationPoint
+    refused = answer(settings, LEVEL, details, b"not the server's")
+    assert refused.StatusCode.value == ua.StatusCodes.BadContinuationPointInvalid
+
+
+BOUNDS: dict[tuple[int | None, int | None, int], tuple[list[int | str], list[int | str]]] = {
+    (0, 5, 0): ([0, 2, 3, 5], [0, 2, 3]),
+    (1, 4, 0): ([0, 2, 3, 5], [2, 3]),
+    (5, 0, 0): ([5, 3, 2, 0], [5, 3, 2]),
+    (4, 1, 0): ([5, 3, 2, 0], [3, 2]),
+    (-1, 5, 0): (["no bound at -1", 0, 2, 3, 5], [0, 2, 3]),
+    (1, 7, 0): ([0, 2, 3, 5, 6, "no bound at 7"], [2, 3, 5, 6]),
+    (0, 5, 3): ([0, 2, 3], [0, 2, 3]),
+    (1, 4, 3): ([0, 2, 3], [2, 3]),
+    (5, 0, 3): ([5, 3, 2], [5, 3, 2]),
+    (4, 1, 3): ([5, 3, 2], [3, 2]),
+    (-1, 5, 3): (["no bound at -1", 0, 2], [0, 2, 3]),
+    (1, 7, 3): ([0, 2, 3], [2, 3, 5]),
+    (0, None, 3): ([0, 2, 3], [0, 2, 3]),
+    (0, None, 6): ([0, 2, 3, 5, 6, "no bound at 7"], [0, 2, 3, 5, 6]),
+    (None, 6, 3): ([6, 5, 3], [6, 5, 3]),
+    (None, 6, 6): ([6, 5, 3, 2, 0, "no bound at -1"], [6, 5, 3, 2, 0]),
+    (2, 2, 0): ([2], [2]),
+    (4, 4, 0): ([3, 5], []),
+    (8, 9, 0): ([6, "no bound at 9"], []),
+}
+"""Table 1 of OPC 10000-11 and more: by start, end and most, what is told with bounds and without them.
+
+Values of seconds 0, 2, 3, 5 and 6 are kept. Where no end is named, its bound is a second beyond the last one.
+"""
+
+
+def told_in(result: Any) -> list[int | str]:
+    """The seconds of the values of an answer."""
+
+    def told(one: Any) -> int | str:
+        second: int = round((one.SourceTimestamp - FIRST) / SECOND)
+        if one.StatusCode.value == ua.StatusCodes.BadBoundNotFound:
+            assert one.Value.Value is None
+            return f"no bound at {second}"
+        assert one.StatusCode.value == ua.StatusCodes.Good
+        return second
+
+    return [told(one) for one in result.HistoryData.DataValues]
+
+
+def test_bounds_are_told_where_they_are_asked_for(
+    repository: Repository, tmp_path: Path, settings: Settings
+) -> None:
+    keep(repository, tmp_path, [fault(0.01)] * 5, [0, 2, 3, 5, 6])
+
+    def at(second: int | None) -> datetime | None:
+        return None if second is None else FIRST + second * SECOND
+
+    async def ask(client: Client) -> dict[object, list[int | str]]:
+        level = node(client, LEVEL)
+        return {
+            (*asked, bounds): told_in(
+                await level.history_read(details_of(at(asked[0]), at(asked[1]), asked[2], bounds=bounds))
+            )
+            for asked in BOUNDS
+            for bounds in (True, False)
+        }
+
+    expected = {(*asked, True): told for asked, (told, _) in BOUNDS.items()}
+    expected |= {(*asked, False): told for asked, (_, told) in BOUNDS.items()}
+    assert looking(settings, ask) == expected
+
+
+def test_bounds_count_among_the_values_of_an_answer(
+    repository: Repository, tmp_path: Path, settings: Settings
+) -> None:
+    keep(repository, tmp_path, [fault(0.01)] * 5, [0, 2, 3, 5, 6])
+    oldest_first = ["no bound at -1", 0, 2, 3, 5, 6, "no bound at 7"]
+    before, after = FIRST - SECOND, FIRST + 7 * SECOND
+
+    async def pages(client: Client, details: object) -> list[list[int | str]]:
+        told: list[list[int | str]] = []
+        continuation = None
+        while not told or continuation is not None:
+            result = await node(client, LEVEL).history_read(details, continuation)
+            told.append(told_in(result))
+            continuation = result.ContinuationPoint
+        return told
+
+    async def ask(client: Client) -> None:
+        for start, end, expected in ((before, after, oldest_first), (after, before, oldest_first[::-1])):
+            for most in (1, 2, 3, 6, 7):
+                told = await pages(client, details_of(start, end, most, bounds=True))
+                assert list(chain(*told)) == expected, most
+                assert {len(one) for one in told[:-1]} <= {most}
+
+    looking(settings, ask)
+
+
+def test_a_motor_without_records_has_no_bounds(settings: Settings) -> None:
+    found = answer(settings, LOAD, details_of(FIRST, FIRST + SECOND, bounds=True))
+    assert found.StatusCode.value == ua.StatusCodes.GoodNoData
+    assert told_in(found) == ["no bound at 0", "no bound at 1"]
+
+
+def test_the_server_says_what_its_histories_are_good_for(settings: Settings) -> None:
+    async def ask(client: Client) -> dict[str, object]:
+        capabilities = client.get_node(ua.NodeId(ua.ObjectIds.HistoryServerCapabilities))
+        return {
+            (await one.read_browse_name()).Name: await one.read_value()
+            for one in await capabilities.get_properties()
+        }
+
+    told = looking(settings, ask)
+    assert told.pop("MaxReturnDataValues") == MOST
+    assert told.pop("MaxReturnEventValues") == 0
+    assert [name for name, is_so in told.items() if is_so] == ["AccessHistoryDataCapability"]
+    assert set(told.values()) == {True, False}

@@ -1,0 +1,68 @@
+"""The folder of trusted clients, whatever is in it."""
+
+from pathlib import Path
+
+import pytest
+from cryptography import x509
+from cryptography.hazmat.primitives import serialization
+
+from service.gateways.opcua.trusted_clients import TrustedClients
+from testing.relays.certificates import Identity, identity
+
+VERSION_3 = b"\xa0\x03\x02\x01\x02"
+VERSION_6 = b"\xa0\x03\x02\x01\x05"
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    folder = tmp_path / "trusted"
+    folder.mkdir()
+    return folder
+
+
+@pytest.fixture
+def client(tmp_path: Path) -> Identity:
+    return identity(tmp_path, "client", authority=True)
+
+
+def der(client: Identity) -> bytes:
+    return client.certificate.public_bytes(serialization.Encoding.DER)
+
+
+def test_what_cannot_be_read_keeps_out_no_other(folder: Path, client: Identity) -> None:
+    certificate = der(client)
+    (folder / "good.cer").write_bytes(certificate)
+    (folder / "garbage.pem").write_bytes(b"-----BEGIN CERTIFICATE-----\nnone\n")
+    (folder / "future.der").write_bytes(certificate.replace(VERSION_3, VERSION_6, 1))
+    (folder / "gone.crt").symlink_to(folder / "nowhere")
+    (folder / "README.txt").write_text("not meant")
+    trusted = TrustedClients(folder)
+    assert trusted.is_trusted(client.certificate)
+    told = trusted.problem() or ""
+    assert all(name in told for name in ("garbage.pem", "future.der", "gone.crt"))
+    assert "good.cer" not in told
+    assert "README" not in told
+
+
+def test_a_folder_that_comes_later_counts_and_says_what_it_lacks(tmp_path: Path, client: Identity) -> None:
+    folder = tmp_path / "later"
+    trusted = TrustedClients(folder)
+    assert "No such file" in (trusted.problem() or "")
+    assert not trusted.is_trusted(client.certificate)
+    folder.mkdir()
+    assert "no certificate" in (trusted.problem() or "")
+    (folder / "client.der").write_bytes(der(client))
+    assert trusted.is_trusted(client.certificate)
+    assert trusted.problem() is None
+    (folder / "client.der").unlink()
+    assert not trusted.is_trusted(client.certificate)
+
+
+def test_several_certificates_may_be_in_one_file(folder: Path, tmp_path: Path, client: Identity) -> None:
+    (tmp_path / "other").mkdir()
+    other = identity(tmp_path / "other", "other", authority=True)
+    pems = [one.certificate.public_bytes(serialization.Encoding.PEM) for one in (client, other)]
+    (folder / "both.pem").write_bytes(b"".join(pems))
+    trusted = TrustedClients(folder)
+    assert all(trusted.is_trusted(one.certificate) for one in (client, other))
+    assert isinstance(other.certificate, x509.Certificate)
