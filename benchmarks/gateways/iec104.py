@@ -23,7 +23,7 @@ class Controlling:
 
     def __init__(self, port: int, motors: int) -> None:
         self._client = c104.Client()
-        connection = self._client.add_connection(ip=LOOPBACK, port=port, init=c104.Init.ALL)
+        connection = self._client.add_connection(ip=LOOPBACK, port=port, init=c104.Init.INTERROGATION)
         assert connection is not None
         station = connection.add_station(common_address=1)
         assert station is not None

@@ -2,7 +2,7 @@
 
 import ctypes
 from collections import deque
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Final
 
@@ -11,6 +11,14 @@ from mms.binding.value_conversion import decode
 from mms.errors import ModelError
 from mms.server.model import Model, Node
 from mms.values import Quality, Value
+
+_Update = tuple[str, int, int]
+"""An attribute's reference, its node, and the value that it is to have."""
+
+
+def _data_object(reference: str) -> str:
+    """Return the reference of the data object, "LD/LN.DO"."""
+    return ".".join(reference.split(".")[:2])
 
 
 class Attributes:
@@ -54,13 +62,15 @@ class Attributes:
         node = self._model.node(reference, Node.DATA_ATTRIBUTE)
         return decode(self._lib, self._value(reference, node))
 
-    def update(self, values: Mapping[str, Value | Quality]) -> None:
+    def update(self, values: Mapping[str, Value | Quality], *, whole_objects: bool = False) -> None:
         """Set attributes as one change. Times are set first, so that an event carries its own.
 
         Parameters
         ----------
         values : mapping of str to Value or Quality
             New values by reference.
+        whole_objects : bool
+            Whether data sets have whole objects alone: one event tells all changes of an object's values.
 
         Raises
         ------
@@ -68,16 +78,16 @@ class Attributes:
             There is no such attribute, or a value does not fit its type. Nothing is changed then.
         """
         lib = self._lib
-        prepared: list[tuple[int, int]] = []
+        prepared: list[_Update] = []
         try:
             for reference in sorted(values, key=lambda name: not name.endswith(".t")):
                 node = self._model.node(reference, Node.DATA_ATTRIBUTE)
                 new = lib.MmsValue_clone(self._value(reference, node))
-                prepared.append((node, new))
+                prepared.append((reference, node, new))
                 self._model.assign(reference, node, new, values[reference])
-            self._apply(prepared)
+            self._apply(prepared, whole_objects=whole_objects)
         finally:
-            for _, new in prepared:
+            for _, _, new in prepared:
                 lib.MmsValue_delete(new)
 
     def _value(self, reference: str, node: int) -> int:
@@ -87,15 +97,31 @@ class Attributes:
             raise ModelError(reference, "an attribute with a value", "one without (constraint CO, say)")
         return int(value)
 
-    def _apply(self, prepared: list[tuple[int, int]]) -> None:
+    def _apply(self, prepared: Sequence[_Update], *, whole_objects: bool) -> None:
         lib = self._lib
         lock_model = not self._library_holds_model
         if lock_model:
             lib.IedServer_lockDataModel(self._server)
-        for node, new in prepared:
+        for _, node, new in self._untold(prepared) if whole_objects else prepared:
             lib.IedServer_updateAttributeValue(self._server, node, new)
         if lock_model:
             lib.IedServer_unlockDataModel(self._server)
+
+    def _untold(self, prepared: Sequence[_Update]) -> Sequence[_Update]:
+        """Set all but the last value and the quality that change in each object; return those.
+
+        The library would close a report at the second event of a member for the same reason.
+        """
+        lib = self._lib
+        last: dict[tuple[str, bool], int] = {}
+        for place, (reference, node, new) in enumerate(prepared):
+            if not lib.MmsValue_equals(self._value(reference, node), new):
+                last[_data_object(reference), reference.endswith(".q")] = place
+        telling = sorted(last.values())
+        for place in set(range(len(prepared))).difference(telling):
+            reference, node, new = prepared[place]
+            lib.MmsValue_update(self._value(reference, node), new)
+        return [prepared[place] for place in telling]
 
     def post(self, values: Mapping[str, Value | Quality]) -> None:
         """Queue one change. Any thread may call this, and none waits.

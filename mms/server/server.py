@@ -195,15 +195,20 @@ class Server:
         """
         self.update_many({reference: value})
 
-    def update_many(self, values: Mapping[str, Value | Quality]) -> None:
-        """Set several attributes as one change: a reader or a report sees all of them or none.
+    def update_many(self, values: Mapping[str, Value | Quality], *, whole_objects: bool = False) -> None:
+        """Set several attributes as one change: a reader sees all of them or none.
 
         Either every value fits or nothing is changed. Times are set first, so that an event carries its own.
+        A report is closed when a second value of one of its members changes, so that one change may take
+        several reports, each of whole members. With `whole_objects` it takes one.
 
         Parameters
         ----------
         values : mapping of str to Value or Quality
             New values by reference.
+        whole_objects : bool
+            Whether the data sets have whole data objects alone. A member that is an attribute could miss its
+            change.
 
         Raises
         ------
@@ -213,7 +218,7 @@ class Server:
         with self._lock:
             self._require_alive("update")
             self._attributes.apply_posted_or_log()
-            self._attributes.update(values)
+            self._attributes.update(values, whole_objects=whole_objects)
             self._note_update()
 
     def post(self, values: Mapping[str, Value | Quality]) -> None:

@@ -1,12 +1,13 @@
 """The IEC 60870-5-104 gateway: follows the plant's state and tells changes by themselves."""
 
-from collections.abc import Mapping
-from datetime import datetime
+import ssl
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
-import c104
 import structlog
+from cryptography import x509
+from cryptography.hazmat.primitives.serialization import Encoding
 
 from service.configuration.gateways.iec104 import Iec104Settings, Iec104Tls
 from service.gateways.context import GatewayContext
@@ -14,13 +15,14 @@ from service.gateways.iec104.points import (
     GONE,
     MOST_MOTORS,
     POINTS,
-    RELAY_ANSWERS,
     SINGLE,
     Said,
     address,
     link_of,
     said_of,
 )
+from service.gateways.iec104.server import StationServer
+from service.gateways.iec104.telegrams import Value
 from service.gateways.kept_file import write_table
 from service.gateways.numbering import MotorNumbers
 from service.gateways.plant_state.figures import MotorFigures, PlantChange, PlantState
@@ -39,8 +41,10 @@ def run(context: GatewayContext) -> None:
     """Serve until the service is gone."""
     settings = context.settings.gateways.iec104
     assert settings is not None  # noqa: S101 - it was started for them
+    station = _made(context, settings)
+    if station is None:
+        return
     follower = context.follower()
-    station = PlantStation(settings, context.settings.data_directory)
     try:
         while not context.stop.is_set():
             change = follower.next_change(context.stop, longest_s=LOOK_S)
@@ -52,25 +56,41 @@ def run(context: GatewayContext) -> None:
         follower.close()
 
 
+def _made(context: GatewayContext, settings: Iec104Settings) -> "PlantStation | None":
+    """Return the station as soon as the files of TLS can be used; None where the service is gone before.
+
+    Raises KeptFileError.
+    """
+    while not context.stop.is_set():
+        try:
+            return PlantStation(settings, context.settings.data_directory)
+        except TlsFileError as error:
+            context.tell(str(error))
+            context.stop.wait(LOOK_S)
+    return None
+
+
+class TlsFileError(ValueError):
+    """A file of TLS cannot be used; it says why."""
+
+
 class PlantStation:
     """The station with the points of all motors."""
 
     def __init__(self, settings: Iec104Settings, data_directory: Path) -> None:
-        """Raises KeptFileError."""
-        self._server = c104.Server(
-            ip=str(settings.bind_address),
-            port=settings.port,
+        """Raises KeptFileError, TlsFileError."""
+        tls, pinned = (None, frozenset()) if settings.tls is None else _security(settings.tls)
+        self._server = StationServer(
+            str(settings.bind_address),
+            settings.port,
+            station=settings.common_address,
             max_connections=settings.max_connections,
-            transport_security=None if settings.tls is None else _security(settings.tls),
+            tls=tls,
+            pinned=pinned,
         )
-        self._server.on_clock_sync(callable=_refuse_clock)
         self._place = f"{settings.bind_address}:{settings.port}"
-        station = self._server.add_station(common_address=settings.common_address)
-        assert station is not None  # noqa: S101 - it is the first one
-        self._station = station
         self._numbers = MotorNumbers(data_directory / NUMBERS)
         self._map = data_directory / MAP
-        self._points: dict[str, list[c104.Point]] = {}
         self._said: dict[int, Said] = {}
         self.problem: str | None = "it starts"
 
@@ -80,17 +100,19 @@ class PlantStation:
         too_many = [name for name in change.now.motors if numbers[name] >= MOST_MOTORS]
         if change.before.motors.keys() != change.now.motors.keys():
             write_table(self._map, ("motor", "first address"), _map_rows(numbers))
+        values: dict[int, Value] = {}
         for motor in change.now.motors.values():
             if numbers[motor.name] < MOST_MOTORS:
-                self._tell_motor(motor, numbers[motor.name], change.now)
+                values |= self._changed(numbers[motor.name], _said_of_motor(motor, change.now))
         for name in change.motors_gone:
-            for point in self._points.get(name, []):
-                self._put(point, GONE)
-        if not self._server.is_running:
+            if numbers[name] < MOST_MOTORS:
+                values |= self._changed(numbers[name], [GONE] * len(KINDS))
+        self._server.put(values)
+        if not self._server.is_listening:
             try:
                 self._server.start()
-            except RuntimeError as error:
-                self.problem = f"{self._place}: {error}"
+            except OSError as error:
+                self.problem = f"{self._place}: {error.strerror}"
                 return
             log.info("serving IEC 60870-5-104", place=self._place)
         self.problem = None
@@ -101,44 +123,40 @@ class PlantStation:
         """End every connection."""
         self._server.stop()
 
-    def _tell_motor(self, motor: MotorFigures, number: int, state: PlantState) -> None:
-        points = self._points.get(motor.name)
-        if points is None:
-            points = [self._added(address(number, offset), kind) for offset, kind in enumerate(KINDS)]
-            self._points[motor.name] = points
-        for point, meant in zip(points, POINTS, strict=False):
-            self._put(point, said_of(meant, motor))
-        self._put(points[RELAY_ANSWERS], link_of(motor, state))
-
-    def _added(self, place: int, kind: c104.Type) -> c104.Point:
-        point = self._station.add_point(io_address=place, type=kind)
-        assert point is not None  # noqa: S101 - each address is given once
-        return point
-
-    def _put(self, point: c104.Point, said: Said) -> None:
-        """Keep a value, and send it to those who are connected where it is another one."""
-        if self._said.get(point.io_address) == said:
-            return
-        self._said[point.io_address] = said
-        point.info = said.information(point.type)
-        if self._server.is_running and self._server.has_active_connections:
-            point.transmit(cause=c104.Cot.SPONTANEOUS)
+    def _changed(self, number: int, said: Sequence[Said]) -> dict[int, Value]:
+        """Return the points of a motor that tell something else than before, by their addresses."""
+        changed = {}
+        for offset, (kind, one) in enumerate(zip(KINDS, said, strict=True)):
+            place = address(number, offset)
+            if self._said.get(place) != one:
+                self._said[place] = one
+                changed[place] = one.value(kind)
+        return changed
 
 
-def _refuse_clock(server: c104.Server, ip: str, date_time: datetime) -> c104.ResponseState:
-    """Refuse to set the clock: that of this machine is not the other system's to set."""
-    del server, ip, date_time
-    return c104.ResponseState.FAILURE
+def _said_of_motor(motor: MotorFigures, state: PlantState) -> list[Said]:
+    return [*(said_of(point, motor, state) for point in POINTS), link_of(motor, state)]
 
 
-def _security(tls: Iec104Tls) -> c104.TransportSecurity:
-    security = c104.TransportSecurity(validate=True, only_known=True)
-    security.set_certificate(cert=str(tls.certificate), key=str(tls.key))
-    security.set_ca_certificate(cert=str(tls.ca))
-    for pinned in tls.pinned:
-        security.add_allowed_remote_certificate(cert=str(pinned))
-    security.set_version(min=c104.TlsVersion.TLS_1_2, max=c104.TlsVersion.TLS_1_2)
-    return security
+def _security(tls: Iec104Tls) -> tuple[ssl.SSLContext, frozenset[bytes]]:
+    """Return the server's side of TLS, and the clients that may connect. Raises TlsFileError."""
+    context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+    context.minimum_version = ssl.TLSVersion.TLSv1_2
+    context.verify_mode = ssl.CERT_REQUIRED
+    named = tls.certificate
+    try:
+        context.load_cert_chain(named, tls.key)
+        named = tls.ca
+        context.load_verify_locations(named)
+        pinned = set()
+        for named in tls.pinned:
+            octets = named.read_bytes()
+            is_text = octets.lstrip().startswith(b"-----BEGIN")
+            load = x509.load_pem_x509_certificate if is_text else x509.load_der_x509_certificate
+            pinned.add(load(octets).public_bytes(Encoding.DER))
+    except (OSError, ValueError) as error:  # that of TLS is one of the system, too
+        raise TlsFileError(f"gateways.iec104.tls: {named}: {error}") from error
+    return context, frozenset(pinned)
 
 
 def _map_rows(numbers: Mapping[str, int]) -> list[tuple[str, int]]:

@@ -4,13 +4,11 @@ docs/integration.md has the addresses; a test compares the two.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from datetime import UTC, datetime, timedelta
+from dataclasses import dataclass, field
 from typing import Final
 
-import c104
-
 from core.condition.kinds import State
+from service.gateways.iec104.telegrams import Type, Value, scaled, short_float, single_point
 from service.gateways.kind_codes import KIND_CODES
 from service.gateways.plant_state.figures import MotorFigures, PlantState, Quality
 from service.storage.states import LinkState
@@ -19,34 +17,34 @@ FIRST: Final = 1000
 BLOCK: Final = 16
 MOST_MOTORS: Final = 20_000
 PERCENT: Final = 100.0
-EPOCH: Final = datetime(1970, 1, 1, tzinfo=UTC)
 
-SINGLE, FLOAT, WHOLE = c104.Type.M_SP_TB_1, c104.Type.M_ME_TF_1, c104.Type.M_ME_TE_1
+SINGLE, FLOAT, WHOLE = Type.M_SP_TB_1, Type.M_ME_TF_1, Type.M_ME_TE_1
 
-QUALITIES: Final = {
-    Quality.GOOD: c104.Quality(),
-    Quality.UNCERTAIN: c104.Quality.NonTopical,
-    Quality.BAD: c104.Quality.Invalid,
-}
+QUALITIES: Final = {Quality.GOOD: 0x00, Quality.UNCERTAIN: 0x40, Quality.BAD: 0x80}
+"""Quality descriptor (IEC 60870-5-101, 7.2.6.3): not topical, invalid."""
 
 
 @dataclass(frozen=True, slots=True)
 class Said:
-    """What a point tells. value: 0 or 1 of single points.  time_ns: of the record, or of the link."""
+    """What a point tells. number: 0 or 1 of single points.  time_ns: of the record, or of the link.
 
-    value: float
+    read_ns: when it was read, of what has no such time. That it was read again is nothing to tell.
+    """
+
+    number: float
     quality: Quality
     time_ns: int | None
+    read_ns: int | None = field(default=None, compare=False)
 
-    def information(self, kind: c104.Type) -> c104.Information:
+    def value(self, kind: Type) -> Value:
         """Return it as a point of this kind has it."""
         quality = QUALITIES[self.quality]
-        recorded_at = EPOCH + timedelta(milliseconds=(self.time_ns or 0) // 1_000_000)
-        if kind == SINGLE:
-            return c104.SingleInfo(on=bool(self.value), quality=quality, recorded_at=recorded_at)
-        if kind == FLOAT:
-            return c104.ShortInfo(actual=self.value, quality=quality, recorded_at=recorded_at)
-        return c104.ScaledInfo(actual=c104.Int16(int(self.value)), quality=quality, recorded_at=recorded_at)
+        time_ns = self.read_ns if self.time_ns is None else self.time_ns
+        if kind is SINGLE:
+            return single_point(on=bool(self.number), quality=quality, time_ns=time_ns)
+        if kind is FLOAT:
+            return short_float(self.number, quality=quality, time_ns=time_ns)
+        return scaled(int(self.number), quality=quality, time_ns=time_ns)
 
 
 GONE: Final = Said(0.0, Quality.BAD, None)
@@ -55,11 +53,12 @@ GONE: Final = Said(0.0, Quality.BAD, None)
 
 @dataclass(frozen=True, slots=True)
 class MotorPoint:
-    """A point of each motor. read: its value; None where it is not known."""
+    """A point of each motor. read: its value; None where it is not known.  of_records: they tell it."""
 
-    kind: c104.Type
+    kind: Type
     meaning: str
     read: Callable[[MotorFigures], float | bool | None]
+    of_records: bool = True
 
 
 def _percent(value: float | None) -> float | None:
@@ -82,7 +81,7 @@ POINTS: Final = (
     MotorPoint(FLOAT, "Load [% of rated]", lambda one: _percent(one.load_level)),
     MotorPoint(WHOLE, "Kind, numbered as for Modbus", lambda one: KIND_CODES.index(one.kind)),
     MotorPoint(WHOLE, "Phase: 0 none, 1 a, 2 b, 3 c", lambda one: (None, "a", "b", "c").index(one.phase)),
-    MotorPoint(SINGLE, "An alarm calls for somebody", lambda one: one.alarms > 0),
+    MotorPoint(SINGLE, "An alarm calls for somebody", lambda one: one.alarms > 0, of_records=False),
 )
 RELAY_ANSWERS: Final = len(POINTS)
 """Offset of the point that tells whether the motor's relay answers."""
@@ -93,11 +92,14 @@ def address(number: int, offset: int) -> int:
     return FIRST + BLOCK * number + offset
 
 
-def said_of(point: MotorPoint, motor: MotorFigures) -> Said:
+def said_of(point: MotorPoint, motor: MotorFigures, state: PlantState) -> Said:
     """Return the value of a motor's point. One that is not known is invalid."""
     value = point.read(motor)
     if value is None:
         return Said(0.0, Quality.BAD, motor.as_of_ns)
+    if not point.of_records:
+        quality = Quality.GOOD if state.is_current else Quality.UNCERTAIN
+        return Said(float(value), quality, None, read_ns=state.read_ns)
     return Said(float(value), motor.quality, motor.as_of_ns)
 
 

@@ -1,4 +1,4 @@
-"""The IED's description (ICD, IEC 61850-6 edition 2): what other systems are engineered with.
+"""The IED's description (IID or ICD, IEC 61850-6 edition 2): what other systems are engineered with.
 
 The same file makes the model that the server offers, so that both agree.
 """
@@ -10,6 +10,12 @@ from lxml import etree
 from lxml.builder import ElementMaker
 
 NAMESPACE: Final = "http://www.iec.ch/61850/2003/SCL"
+TEMPLATE: Final = "TEMPLATE"
+"""Name of the IED in an ICD, which describes what can be had; an IID has the real one."""
+
+CONFIGURATION_REVISION: Final = "2"
+"""Of reports (confRev) and logical devices (configRev). Count it up when a data set gets other members."""
+
 ACCESS_POINT: Final = "S1"
 DATA_SET: Final = "Verdict"
 REPORT: Final = "brcbVerdict"
@@ -51,8 +57,14 @@ _OF_MOTOR: Final = (
 _OF_PLANT: Final = (("", "CALH", "1", ("GrAlm", "GrWrn"), "ST"),)
 
 
-def description(ied: str, motors: Mapping[str, str], *, plant: str, revision: str) -> bytes:
-    """Return the ICD. motors: descriptions for people, by logical device; plant: device of the plant."""
+def description(
+    ied: str, motors: Mapping[str, str], *, plant: str, revision: str, shown: Mapping[str, bool]
+) -> bytes:
+    """Return the description of an IED of this name.
+
+    motors: descriptions for people, by logical device.  plant: device of the plant.  shown: whether clients
+    have to show a `password` and a `certificate`.
+    """
     devices = [
         _device(plant, "The plant", _OF_PLANT, ("LPHD", "CALH")),
         *(
@@ -79,7 +91,7 @@ def description(ied: str, motors: Mapping[str, str], *, plant: str, revision: st
                 ),
                 _E.ConfLNs(),
             ),
-            _E.AccessPoint(_E.Server(_E.Authentication(), *devices), name=ACCESS_POINT),
+            _E.AccessPoint(_E.Server(_authentication(shown), *devices), name=ACCESS_POINT),
             name=ied,
             manufacturer="StatorWatch",
             type="Motor health",
@@ -91,6 +103,11 @@ def description(ied: str, motors: Mapping[str, str], *, plant: str, revision: st
         release="4",
     )  # fmt: skip
     return bytes(etree.tostring(root, xml_declaration=True, encoding="UTF-8", pretty_print=True))
+
+
+def _authentication(shown: Mapping[str, bool]) -> etree._Element:
+    ways = {"none": not any(shown.values()), **shown}
+    return _E.Authentication(**{way: str(is_so).lower() for way, is_so in ways.items()})
 
 
 Members = Sequence[tuple[str, str, str, Sequence[str], str]]
@@ -113,7 +130,7 @@ def _device(name: str, text: str, members: Members, nodes: Sequence[str]) -> etr
         _E.RptEnabled(max=str(INSTANCES)),
         name=REPORT,
         datSet=DATA_SET,
-        confRev="1",
+        confRev=CONFIGURATION_REVISION,
         buffered="true",
         bufTime="100",
         intgPd="0",

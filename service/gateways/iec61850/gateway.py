@@ -6,20 +6,31 @@ from pathlib import Path
 import structlog
 
 import scl
-from mms import Identity, Server, ServerStartFailed, TlsConfiguration, filter_tls_log_from_stderr, read_secret
+from mms import (
+    CredentialFileError,
+    Identity,
+    Server,
+    ServerStartFailed,
+    TlsConfiguration,
+    filter_tls_log_from_stderr,
+    read_secret,
+)
 from scl.model_text import model_text
 from service.configuration.gateways.iec61850 import Iec61850Settings
 from service.gateways.context import GatewayContext
-from service.gateways.iec61850.description import description
+from service.gateways.iec61850.description import TEMPLATE, description
 from service.gateways.iec61850.logical_devices import PLANT, logical_devices
-from service.gateways.iec61850.values import meanings, motor_values, names, plant_values, unknown_values
+from service.gateways.iec61850.values import meanings, motor_values, names, plant_values
 from service.gateways.kept_file import replace_file
 from service.gateways.plant_state.figures import PlantChange, PlantState
 
 log = structlog.get_logger(__name__)
 
-DESCRIPTION = "statorwatch.icd"
-"""File in the data directory, with which other systems are engineered."""
+INSTANCE = "statorwatch.iid"
+"""File in the data directory: describes this IED, by its name."""
+
+CAPABILITIES = "statorwatch.icd"
+"""The same without a name, for tools that give one."""
 
 ASSOCIATION_S = 5.0
 """A client that has not associated within this time is sent away: there is room for few."""
@@ -52,7 +63,8 @@ class PlantIed:
 
     def __init__(self, settings: Iec61850Settings, data_directory: Path) -> None:
         self._settings = settings
-        self._file = data_directory / DESCRIPTION
+        self._instance = data_directory / INSTANCE
+        self._capabilities = data_directory / CAPABILITIES
         self._server: Server | None = None
         self._state = PlantState()
         self._devices: dict[str, str] = {}
@@ -83,15 +95,18 @@ class PlantIed:
     def _begin(self) -> None:
         self.stop()
         self._devices = dict(logical_devices(self._state.motors))
-        server = self._built()
+        try:
+            server = self._built()
+        except CredentialFileError as error:
+            self.problem = str(error)
+            return
         for motor, device in self._devices.items():
             figures = self._state.motors[motor]
             relay = self._state.relays.get(figures.relay)
             vendor, model = ("", "") if relay is None else (relay.manufacturer, relay.type)
             path = self._path(device)
-            server.update_many(names(path, motor, vendor, model, version("statorwatch")))
-            server.update_many(meanings(path) | unknown_values(path))
-            server.update_many(motor_values(path, figures, relay))
+            server.update_many(names(path, motor, vendor, model, version("statorwatch")) | meanings(path))
+            server.update_many(motor_values(path, figures, relay), whole_objects=True)
         plant = self._path(PLANT)
         server.update_many(names(plant, "The plant", "StatorWatch", "service", version("statorwatch")))
         server.update_many(plant_values(plant, self._state))
@@ -111,19 +126,23 @@ class PlantIed:
         for name, motor in change.now.motors.items():
             if name in told or motor.relay in relays:
                 relay = change.now.relays.get(motor.relay)
-                self._server.update_many(motor_values(self._path(self._devices[name]), motor, relay))
-        self._server.update_many(plant_values(self._path(PLANT), change.now))
+                values = motor_values(self._path(self._devices[name]), motor, relay)
+                self._server.update_many(values, whole_objects=True)
+        values = plant_values(self._path(PLANT), change.now, change.before)
+        self._server.update_many(values, whole_objects=True)
 
     def _built(self) -> Server:
-        """Write the description, and make a server of it."""
+        """Write the descriptions, and make a server of that of the instance."""
         settings = self._settings
         texts = {device: motor for motor, device in self._devices.items()}
         revision = version("statorwatch")
-        replace_file(self._file, description(settings.ied_name, texts, plant=PLANT, revision=revision))
+        shown = {"password": settings.password_file is not None, "certificate": settings.tls is not None}
+        for file, name in ((self._capabilities, TEMPLATE), (self._instance, settings.ied_name)):
+            replace_file(file, description(name, texts, plant=PLANT, revision=revision, shown=shown))
         tls: TlsConfiguration | None = None if settings.tls is None else settings.tls.configuration()
         passwords = [] if settings.password_file is None else [_password(settings.password_file)]
         return Server(
-            model_text(scl.read(self._file), settings.ied_name),
+            model_text(scl.read(self._instance), settings.ied_name),
             address=str(settings.bind_address),
             port=settings.port,
             max_connections=settings.max_connections,

@@ -8,7 +8,7 @@ from core.condition.kinds import State
 from core.rotor.finding import RotorState
 from mms import GOOD, Timestamp, Validity, Value
 from mms import Quality as MmsQuality
-from service.gateways.iec61850.description import ANALOGUES, INTEGERS, UNBALANCES
+from service.gateways.iec61850.description import ANALOGUES, CONFIGURATION_REVISION, INTEGERS, UNBALANCES
 from service.gateways.kind_codes import KIND_CODES, ROTOR_CODES
 from service.gateways.plant_state.device_health import DeviceHealth
 from service.gateways.plant_state.figures import MotorFigures, PlantState, Quality, RelayFigures
@@ -23,6 +23,8 @@ HEALTHS: Final[Mapping[DeviceHealth, int]] = {
     DeviceHealth.MAINTENANCE_REQUIRED: WARNING,
     DeviceHealth.FAILURE: ALARM,
 }
+UNKNOWN_TIME: Final = 0x4A
+"""Quality of a time that is none: clock failure, and as many bits of a fraction as other times have."""
 PERCENT: Final = 100.0
 LONGEST_TEXT: Final = 255
 PRINTABLE: Final = range(0x20, 0x7F)
@@ -32,7 +34,7 @@ Values = dict[str, Value | MmsQuality]
 
 def motor_values(device: str, motor: MotorFigures, relay: RelayFigures | None) -> Values:
     """Return the attributes of a motor's logical device. device: its name with that of the IED."""
-    quality, time = quality_of(motor), Timestamp(motor.as_of_ns or 0)
+    quality, time = quality_of(motor), _time(motor.as_of_ns)
     low, high = motor.mu_f_ci95 or (None, None)
     figures = (motor.mu_f, low, high, motor.detection_limit, motor.load_level, motor.change)
     values: Values = {
@@ -49,28 +51,20 @@ def motor_values(device: str, motor: MotorFigures, relay: RelayFigures | None) -
     return values
 
 
-def unknown_values(device: str) -> Values:
-    """Return the attributes of a motor's device before anything is known: none of them is good."""
+def plant_values(device: str, state: PlantState, before: PlantState | None = None) -> Values:
+    """Return the group alarm and the group warning of the plant, or what of them has changed since before."""
+    told = {} if before is None else _groups(before)
     values: Values = {}
-    bad, time = MmsQuality(Validity.INVALID), Timestamp(0)
-    objects = ["ZMOT1.EEHealth", "GAPC1.Str", "GAPC1.Op", "LPHD1.PhyHealth", "LPHD1.Proxy"]
-    objects += [f"GGIO1.IntIn{number}" for number in range(1, len(INTEGERS) + 1)]
-    objects += [f"GGIO1.AnIn{number}" for number in range(1, len(ANALOGUES) + 1)]
-    objects += [f"MSQI1.{name}" for name in UNBALANCES]
-    for name in objects:
-        values |= {f"{device}/{name}.q": bad, f"{device}/{name}.t": time}
+    for name, (is_on, quality) in _groups(state).items():
+        if told.get(name) != (is_on, quality):
+            values |= _state(f"{device}/CALH1.{name}", is_on, quality, Timestamp(state.read_ns))
     return values
 
 
-def plant_values(device: str, state: PlantState) -> Values:
-    """Return the group alarm and the group warning of the plant."""
+def _groups(state: PlantState) -> Mapping[str, tuple[bool, MmsQuality]]:
     quality = GOOD if state.is_current else MmsQuality(Validity.QUESTIONABLE, old_data=True)
-    time = Timestamp(state.read_ns)
     healths = {HEALTHS[motor.device_health] for motor in state.motors.values()}
-    return {
-        **_state(f"{device}/CALH1.GrAlm", ALARM in healths, quality, time),
-        **_state(f"{device}/CALH1.GrWrn", WARNING in healths, quality, time),
-    }
+    return {"GrAlm": (ALARM in healths, quality), "GrWrn": (WARNING in healths, quality)}
 
 
 def names(device: str, text: str, vendor: str, model: str, revision: str) -> Values:
@@ -79,7 +73,7 @@ def names(device: str, text: str, vendor: str, model: str, revision: str) -> Val
         f"{device}/LLN0.NamPlt.vendor": "StatorWatch",
         f"{device}/LLN0.NamPlt.swRev": printable(revision),
         f"{device}/LLN0.NamPlt.d": printable(text),
-        f"{device}/LLN0.NamPlt.configRev": "1",
+        f"{device}/LLN0.NamPlt.configRev": CONFIGURATION_REVISION,
         f"{device}/LPHD1.PhyNam.vendor": printable(vendor),
         f"{device}/LPHD1.PhyNam.model": printable(model),
         f"{device}/LPHD1.PhyNam.name": printable(text),
@@ -113,7 +107,7 @@ def printable(text: str) -> str:
 def _relay_values(device: str, relay: RelayFigures | None) -> Values:
     """Return the physical device's health: that of the relay, for which the service stands as a proxy."""
     health = WARNING if relay is None else HEALTHS[relay.device_health]
-    time = Timestamp(0 if relay is None else relay.changed_ns or 0)
+    time = _time(None if relay is None else relay.changed_ns)
     is_told = relay is not None and relay.quality is Quality.GOOD
     quality = GOOD if is_told else MmsQuality(Validity.QUESTIONABLE, old_data=True)
     return {
@@ -124,13 +118,18 @@ def _relay_values(device: str, relay: RelayFigures | None) -> Values:
 
 def _unbalances(device: str, motor: MotorFigures, quality: MmsQuality) -> Values:
     """Return the unbalance in the latest record that tells it; it is old where a later record does not."""
-    time = Timestamp(motor.unbalance_ns or 0)
+    time = _time(motor.unbalance_ns)
     if quality == GOOD and (motor.unbalance_ns or 0) < (motor.as_of_ns or 0):
         quality = MmsQuality(Validity.QUESTIONABLE, old_data=True)
     values: Values = {}
     for name, figure in zip(UNBALANCES, (motor.voltage_unbalance, motor.current_unbalance), strict=True):
         values |= _analogue(f"{device}/MSQI1.{name}", figure, quality, time)
     return values
+
+
+def _time(time_ns: int | None) -> Timestamp:
+    """Return a time; one that is not known says of itself that it cannot be relied on (ClockFailure)."""
+    return Timestamp(0, UNKNOWN_TIME) if time_ns is None else Timestamp(time_ns)
 
 
 def _state(name: str, value: Value, quality: MmsQuality, time: Timestamp) -> Values:
