@@ -19,7 +19,7 @@ log = structlog.get_logger(__name__)
 COMMAND = (sys.executable, "-m", "service.gateways")
 """With the gateway's kind behind it."""
 
-LIBRARIES: Mapping[str, str] = {"iec104": "c104", "modbus": "pymodbus", "mqtt": "aiomqtt", "opcua": "asyncua"}
+LIBRARIES: Mapping[str, str] = {"modbus": "pymodbus", "mqtt": "aiomqtt", "opcua": "asyncua"}
 """The library that a gateway needs besides those of the service; the extra has the name of its kind."""
 
 STARTING = "it starts"

@@ -109,10 +109,11 @@ def _read(output: IO[bytes], heard: list[Heard]) -> None:
 
 @contextmanager
 def running_mosquitto(
-    directory: Path, *settings: str, client_options: Sequence[str] = ()
+    directory: Path, *settings: str, client_options: Sequence[str] = (), port: int | None = None
 ) -> Iterator[Mosquitto]:
     """Run a broker on loopback, without passwords unless its settings say otherwise."""
-    broker = Mosquitto(directory, settings or ("allow_anonymous true",), client_options)
+    chosen = settings or ("allow_anonymous true",)
+    broker = Mosquitto(directory, chosen, client_options, free_port() if port is None else port)
     broker.start()
     try:
         yield broker

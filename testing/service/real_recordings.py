@@ -7,7 +7,7 @@ import numpy as np
 from core.machines.parameters import Motor
 from core.recordings import Digitals, Recording
 from core.recordings.comtrade.writer import combined_bytes
-from service.jobs import Diagnosed, DiagnosisTask
+from service.jobs.task import Diagnosed, DiagnosisTask
 from service.jobs.worker import diagnose_recording
 from service.recording_store.store import RecordingStore
 from service.storage import Repository

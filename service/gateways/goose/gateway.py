@@ -69,10 +69,16 @@ def _document(settings: Settings) -> scl.Scl:
 
 
 def _write_changes(context: GatewayContext, receiver: Receiver, changes: PendingChanges) -> None:
-    """Write what is heard until the service is gone, whether the interface still works or not."""
+    """Write what is heard until the service is gone, whether the interface still works or not.
+
+    Raises what has ended the receiver, once all is written that it had heard.
+    """
     writer = SignalWriter(context.repository, context.settings.max_open_requests)
     while not context.stop.is_set():
+        error = receiver.error  # looked at first: all that it had heard waits by then
         change = changes.wait_for_next(LOOK_S)
+        if change is None and error is not None:
+            raise error
         key = uuid4().hex
         while change is not None and not context.stop.is_set():
             try:

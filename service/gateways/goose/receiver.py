@@ -63,6 +63,8 @@ class Receiver:
         self._stop = stop
         self.problem: str | None = self._listener.problem
         """What does not work; None where all does."""
+        self.error: Exception | None = None
+        """What has ended the thread; None while it listens."""
         self._thread = Thread(target=self._run, name="GOOSE receiver", daemon=True)
 
     def start(self) -> None:
@@ -74,6 +76,14 @@ class Receiver:
         self._thread.join()
 
     def _run(self) -> None:
+        try:
+            self._hear()
+        except Exception as error:  # its owner raises it: the gateway ends, and is started again
+            log.exception("the GOOSE receiver failed")
+            self.problem = f"the GOOSE receiver failed: {error!r}"
+            self.error = error
+
+    def _hear(self) -> None:
         while not self._stop.is_set():
             try:
                 with RawSocket(self._interface, self._groups) as socket:

@@ -9,11 +9,18 @@ import structlog
 from service.configuration.gateways.modbus import ModbusSettings
 from service.gateways.context import GatewayContext
 from service.gateways.kept_file import write_table
-from service.gateways.modbus.register_map import BLOCK, FIRST_BLOCK, MOST_MOTORS, NO_MOTOR, blocks, header
+from service.gateways.modbus.register_map import (
+    BLOCK,
+    FIRST_BLOCK,
+    MOST_MOTORS,
+    NOTHING_KNOWN,
+    blocks,
+    header,
+)
 from service.gateways.modbus.server import BoundedServer, Registers
 from service.gateways.numbering import MotorNumbers
 from service.gateways.plant_state.figures import PlantChange, PlantState
-from service.gateways.plant_state.following import PlantFollower
+from service.gateways.plant_state.following import NOT_READ, PlantFollower
 
 log = structlog.get_logger(__name__)
 
@@ -37,12 +44,12 @@ async def _serve(context: GatewayContext, settings: ModbusSettings) -> None:
     following = asyncio.create_task(_follow(context, plant))
     try:
         while not context.stop.is_set() and not following.done():
-            if not server.transport and not await server.listen():
-                context.tell(f"{settings.bind_address}:{settings.port}: the port is not free")
-            else:
-                context.tell(plant.problem)
+            # It answers before the first reading: a client tells bad values better than a closed port.
+            is_listening = server.transport or await server.listen()
             plant.tick()
             await asyncio.sleep(ALIVE_S)
+            port = f"{settings.bind_address}:{settings.port}"
+            context.tell(plant.problem if is_listening else f"{port}: the port is not free")
         await following
     finally:
         await server.shutdown()  # type: ignore[no-untyped-call]
@@ -67,7 +74,7 @@ class PlantRegisters:
     def __init__(self, data_directory: Path) -> None:
         """Raises KeptFileError."""
         self.registers = Registers()
-        self.silence: str | None = None
+        self.silence: str | None = NOT_READ
         self._numbers = MotorNumbers(data_directory / NUMBERS)
         self._map = data_directory / MAP
         self._state = PlantState()
@@ -91,7 +98,11 @@ class PlantRegisters:
         if change.before.motors.keys() != change.now.motors.keys():
             write_table(self._map, ("motor", "block", "first register"), _map_rows(numbers))
         self._state = change.now
-        gone = {FIRST_BLOCK + BLOCK * numbers[motor]: NO_MOTOR for motor in change.motors_gone}
+        gone = {
+            FIRST_BLOCK + BLOCK * numbers[motor]: NOTHING_KNOWN
+            for motor in change.motors_gone
+            if numbers[motor] < MOST_MOTORS
+        }
         self.registers.put({**gone, **blocks(change.now, numbers)})
         self._put_header()
 

@@ -1,7 +1,7 @@
 """The registers of the Modbus server: a header, and a block for each motor.
 
-Floats are of 32 bits by IEEE 754 and integers of 32 bits unsigned, the high word first. What is not known is
-NaN, or 0. docs/integration.md has the map; a test compares the two.
+Floats are of 32 bits by IEEE 754 and integers of 32 bits unsigned, the high word first. A figure that is not
+known is NaN. docs/integration.md has the map; a test compares the two.
 """
 
 import math
@@ -9,7 +9,7 @@ import struct
 from collections.abc import Mapping, Sequence
 from typing import Final
 
-from core.condition.kinds import State
+from core.condition.kinds import Kind, State
 from core.units import NANOSECONDS_PER_SECOND
 from service.gateways.kind_codes import KIND_CODES, ROTOR_CODES
 from service.gateways.plant_state.device_health import DeviceHealth
@@ -44,8 +44,6 @@ PRIORITIES: Final = (
 LINKS: Final = (LinkState.UNKNOWN, LinkState.UP, LinkState.DOWN, LinkState.QUARANTINED)
 
 LARGEST: Final = 0xFFFF
-NO_MOTOR: Final = (*[0] * 4, QUALITIES.index(Quality.BAD), *[0] * (BLOCK - 5))
-"""Registers of a block that no motor in service has."""
 
 _HEADER = struct.Struct(">HHHHI HH")
 _BLOCK = struct.Struct(">10H 6f II")
@@ -79,7 +77,7 @@ def blocks(state: PlantState, numbers: Mapping[str, int]) -> Mapping[int, Sequen
 def _block(motor: MotorFigures, state: PlantState) -> list[int]:
     relay = state.relays.get(motor.relay)
     low, high = motor.mu_f_ci95 or (None, None)
-    packed = _BLOCK.pack(
+    return _filled(
         STATES.index(motor.state),
         KIND_CODES.index(motor.kind),
         PHASES.index(motor.phase),
@@ -97,9 +95,33 @@ def _block(motor: MotorFigures, state: PlantState) -> list[int]:
         (motor.as_of_ns or 0) // NANOSECONDS_PER_SECOND,
         (motor.since_ns or 0) // NANOSECONDS_PER_SECOND,
     )
-    registers = _registers(packed)
+
+
+def _filled(*values: float) -> list[int]:
+    """Return the registers of a block with these values."""
+    registers = _registers(_BLOCK.pack(*values))
     return registers + [0] * (BLOCK - len(registers))
 
 
 def _registers(packed: bytes) -> list[int]:
     return list(struct.unpack(f">{len(packed) // 2}H", packed))
+
+
+NOTHING_KNOWN: Final = tuple(
+    _filled(
+        STATES.index(State.UNKNOWN),
+        KIND_CODES.index(Kind.NONE),
+        PHASES.index(None),
+        HEALTHS.index(DeviceHealth.CHECK_FUNCTION),
+        QUALITIES.index(Quality.BAD),
+        ROTOR_CODES.index(None),
+        int(True),
+        0,
+        PRIORITIES.index(None),
+        LINKS.index(LinkState.UNKNOWN),
+        *[math.nan] * 6,
+        0,
+        0,
+    )
+)
+"""A block before the first reading, and one that no motor in service has."""

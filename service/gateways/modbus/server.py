@@ -5,22 +5,24 @@ from collections.abc import Callable, Mapping, Sequence
 from ipaddress import ip_address
 
 from pymodbus.constants import ExcCodes
+from pymodbus.datastore import ModbusServerContext
+from pymodbus.pdu import DecodePDU, ExceptionResponse, ModbusPDU
 from pymodbus.server import ModbusTcpServer
 from pymodbus.server.requesthandler import ServerRequestHandler
 from pymodbus.simulator import DataType, SimData, SimDevice
 
 from service.configuration.gateways.modbus import ModbusSettings
-from service.gateways.modbus.register_map import REGISTERS
+from service.gateways.modbus.register_map import FIRST_BLOCK, MOST_MOTORS, NOTHING_KNOWN, REGISTERS
 
 READ = (3, 4)
 """Functions that read holding and input registers. Both see the same ones."""
 
 
 class Registers:
-    """What the server reads out."""
+    """What the server reads out: of no motor anything is known before it is put."""
 
     def __init__(self) -> None:
-        self._values = [0] * REGISTERS
+        self._values = [*[0] * FIRST_BLOCK, *NOTHING_KNOWN * MOST_MOTORS]
 
     def device(self) -> SimDevice:
         """Return the device that answers for every unit identifier."""
@@ -34,16 +36,14 @@ class Registers:
 
     async def _read(
         self,
-        function: int,
+        _function: int,
         first: int,
         address: int,
         count: int,
         registers: list[int],
-        written: list[int] | list[bool] | None,
+        _written: list[int] | list[bool] | None,
     ) -> ExcCodes | None:
-        """Let the library answer with what is known now. Refuses everything but reading."""
-        if function not in READ or written is not None:
-            return ExcCodes.ILLEGAL_FUNCTION
+        """Let the library answer with what is known now."""
         registers[address - first : address - first + count] = self._values[address : address + count]
         return None
 
@@ -53,11 +53,38 @@ class BoundedServer(ModbusTcpServer):
 
     def __init__(self, device: SimDevice, settings: ModbusSettings) -> None:
         super().__init__(device, address=(str(settings.bind_address), settings.port))
+        self.decoder = _ReadingOnly(True)  # noqa: FBT003 - the library's own way to say "requests"
         self._settings = settings
 
     def callback_new_connection(self) -> ServerRequestHandler:
         """Return what answers a new connection."""
         return _Connection(self, self._settings, lambda: len(self.active_connections))
+
+
+class _ReadingOnly(DecodePDU):
+    """Decodes requests to read, and lets all else be refused before the library makes anything of it.
+
+    The library has answers of its own to diagnostics, files and queues, which are made up.
+    """
+
+    def decode(self, frame: bytes) -> ModbusPDU:
+        function = frame[0]
+        if function not in READ:
+            return _Refused(function, ExcCodes.ILLEGAL_FUNCTION)
+        return super().decode(frame) or _Refused(function, ExcCodes.ILLEGAL_VALUE)
+
+
+class _Refused(ModbusPDU):
+    """A request whose answer is an exception."""
+
+    def __init__(self, function: int, reason: ExcCodes) -> None:
+        super().__init__()
+        self.function_code = function
+        self._reason = reason
+
+    async def datastore_update(self, _context: ModbusServerContext, _device_id: int) -> ModbusPDU:
+        """Return the exception; nothing is looked up."""
+        return ExceptionResponse(self.function_code, self._reason)
 
 
 class _Connection(ServerRequestHandler):

@@ -7,12 +7,16 @@ from collections.abc import Mapping
 from dataclasses import fields
 from enum import StrEnum
 from importlib.metadata import version
+from typing import Final
 
 from core.time_stamps import rfc3339
 from service.gateways.plant_state.figures import MotorFigures, RelayFigures
 from service.storage.records import Alarm, AlarmChange, ConditionChange
 
 VERSION = version("statorwatch")
+
+NAMES_OF_TIMES: Final = {"running_ns": "running_as_of", "unbalance_ns": "unbalance_as_of"}
+"""Of the figures that have times of their own; what other times are of says their name."""
 
 
 def offline() -> bytes:
@@ -62,7 +66,8 @@ def _field(name: str, value: object) -> tuple[str, object]:
     if name == "ied":
         return "relay", value
     if name.endswith("_ns"):
-        return name.removesuffix("_ns"), rfc3339(value) if isinstance(value, int) else None
+        told = NAMES_OF_TIMES.get(name, name.removesuffix("_ns"))
+        return told, rfc3339(value) if isinstance(value, int) else None
     if isinstance(value, float) and not math.isfinite(value):
         return name, None
     if isinstance(value, StrEnum):

@@ -13,8 +13,8 @@ from service.storage.records import Cursor, FleetMotor, IedEntry, Page, Unbalanc
 from service.storage.repository import Repository
 
 PAGE = 500
-MOST_ALARMS = 1000
-"""Open alarms that are told; the most urgent ones come first."""
+MOST_ALARMS = 1_000_000
+"""More than are ever open (a relay raises a thousand of a kind): one left out would be told as over."""
 
 MOST_REASONS = 10
 AHEAD_NS = NANOSECONDS_PER_DAY

@@ -21,8 +21,9 @@ from core.warm_up import warm_up
 from ied_sim.relay.protection import DefiniteTime, ProtectionSettings
 from ied_sim.scenario.scenario import healthy_reference
 from ied_sim.simulator import Simulator
-from mms import BitString, Timestamp, Value
-from mms.goose import PublishedBlock, Publisher, RawSocket
+from mms import BitString, Quality, Timestamp, Value
+from mms.goose import PublishedBlock, Publisher, RawSocket, decode_frame, encode_frame
+from mms.goose.publisher import LIVES
 from scl import Address
 from scl.goose_blocks import GooseBlock, goose_blocks
 from service.alarms.kinds import AlarmKind
@@ -43,8 +44,13 @@ from tests.service.gateways.goose.plant import MOTORS
 
 TRIP = "A1_SEL710PRO/TRIPPTRC1.Tr.general"
 TRIPS_AFTER_S = 2.0
+MISSED = 4
+"""States of a relay that are left out."""
 LONGEST_S = 60.0
 GOOD, BAD = BitString((False,) * 13), BitString((False, True, *(False,) * 11))
+OF_A_TEST = Quality(test=True).bits
+LIVES_SHORT_MS, LIVES_LONG_MS = 500, 60_000
+"""How long a message lives: it is waited for the end of the one, and the other does not end in the test."""
 
 
 def main(directory: Path) -> None:
@@ -57,8 +63,8 @@ def main(directory: Path) -> None:
     names = [ied.name for ied in scl.read(scl.DEMO_PLANT_SCD).ieds]
     scl.with_addresses(scl.DEMO_PLANT_SCD, file, {name: Address(LOOPBACK, free_port()) for name in names})
     document = scl.read(file)
-    (block,), (other_block,), (third_block,) = (
-        goose_blocks(document.ied(name)) for name in ("A1_SEL710", "A2_SEL710", "B1_SEL710")
+    (block,), (other_block,), (third_block,), (fourth_block,), (fifth_block,) = (
+        goose_blocks(document.ied(f"{name}_SEL710")) for name in ("A1", "A2", "B1", "B2", "B3")
     )
     goose = GooseSettings(interface="right", triggers=(GooseTrigger(signal=TRIP, motors=("FAN-A2",)),))
     settings = Settings(
@@ -86,6 +92,8 @@ def main(directory: Path) -> None:
         _lie(gateways, sender, block, other_block, repository, found)
         with closing(sqlite3.connect(make_url(settings.database_url).database or "")) as database:
             _trip_while_neither_answers(gateways, sender, third_block, database, repository, found)
+        _fall_silent(gateways, sender, fourth_block, repository)
+        _replay(sender, fourth_block, fifth_block, repository, found)
     print(json.dumps(found))  # noqa: T201 - the test reads it
 
 
@@ -155,6 +163,67 @@ def _trip_while_neither_answers(
     wait_until(lambda: relay.tells() and "5 of 6" in (_goose(gateways).problem or ""), "it to hear again")
 
 
+def _fall_silent(
+    gateways: PlantGateways, sender: RawSocket, block: GooseBlock, repository: Repository
+) -> None:
+    """Trip and say nothing more; then begin anew, with a lower number, as a relay that was switched off."""
+    relay = _Relay(sender, block, GOOD, lives_ms=LIVES_SHORT_MS)
+    relay.turns(trip=True)
+    wait_until(lambda: "COMPRESSOR-B2" in _tripped(repository), "the trip")
+    _problem(gateways, "6 of 6")
+    anew = _Relay(sender, block, GOOD, lives_ms=LIVES_LONG_MS)
+    wait_until(lambda: anew.tells() and "COMPRESSOR-B2" not in _tripped(repository), "the end of the trip")
+
+
+def _replay(
+    sender: RawSocket,
+    block: GooseBlock,
+    other_block: GooseBlock,
+    repository: Repository,
+    found: dict[str, object],
+) -> None:
+    """Tell, while a relay is heard, what it told before, what tests tell, and a state after missed ones."""
+    other = _Relay(sender, other_block, GOOD)
+
+    def is_tripped_after(*frames: bytes) -> bool:
+        for octets in frames:
+            sender.send(octets)
+        # What another relay tells after them shows that they were taken, if they were.
+        trip = "PUMP-B3" not in _tripped(repository)
+        other.turns(trip=trip)
+        wait_until(lambda: ("PUMP-B3" in _tripped(repository)) is trip, "the other relay's trip, or its end")
+        return "COMPRESSOR-B2" in _tripped(repository)
+
+    # Its first state is the one that is heard already.
+    relay = _Relay(sender, block, GOOD, lives_ms=LIVES_LONG_MS)
+    tripped = relay.turns(trip=True)
+    found["once it trips"] = is_tripped_after()
+    fallen = relay.turns(trip=False)
+    on, number = decode_frame(tripped).message.values, decode_frame(fallen).message.state_number
+    found["after replays"] = is_tripped_after(
+        tripped, _changed(fallen, values=on), _changed(fallen, values=on, sequence_number=1)
+    )
+    later = _changed(tripped, state_number=number + 1)
+    found["after tests"] = is_tripped_after(
+        _changed(later, simulation=True),
+        encode_frame(replace(decode_frame(later), simulated=True)),
+        _changed(later, values=_members(block, OF_A_TEST, trip=True)),
+    )
+    found["after missed states"] = is_tripped_after(_changed(later, state_number=number + 1 + MISSED + 1))
+
+
+def _changed(octets: bytes, **changes: object) -> bytes:
+    """Return a frame with other fields of its message."""
+    frame = decode_frame(octets)
+    message = replace(frame.message, **changes)  # type: ignore[arg-type] # fields by name
+    return encode_frame(replace(frame, message=message))
+
+
+def _members(block: GooseBlock, quality: BitString, *, trip: bool) -> tuple[Value, ...]:
+    member: Value = (trip, quality, Timestamp(time.time_ns()))
+    return (member,) * len(block.members)
+
+
 def _all_frames_are_read() -> bool:
     """Tell whether no frame waits in a socket of this network that hears GOOSE."""
     sockets = [line.split() for line in Path("/proc/net/packet").read_text().splitlines()[1:]]
@@ -162,7 +231,10 @@ def _all_frames_are_read() -> bool:
 
 
 class _Relay:
-    """Tells as a relay that all of its protection has tripped, or nothing."""
+    """Tells as a relay that all of its protection has tripped, or nothing.
+
+    lives_ms: how long a message lives; None for as long as the block says.
+    """
 
     def __init__(
         self,
@@ -172,9 +244,9 @@ class _Relay:
         *,
         revision: int | None = None,
         trip: bool = False,
+        lives_ms: int | None = None,
     ) -> None:
-        member: Value = (trip, quality, Timestamp(time.time_ns()))
-        self._sender = sender
+        self._sender, self._block, self._quality = sender, block, quality
         address = block.control.address
         assert address is not None
         published = PublishedBlock(
@@ -185,12 +257,23 @@ class _Relay:
             destination=address.mac,
             application_id=address.application_id,
         )
-        self._publisher = Publisher(published, sender.address, (member,) * len(block.members), time.time_ns())
+        if lives_ms is not None:
+            interval_ms = lives_ms // LIVES
+            published = replace(published, minimum_time_ms=interval_ms, maximum_time_ms=interval_ms)
+        values = _members(block, quality, trip=trip)
+        self._publisher = Publisher(published, sender.address, values, time.time_ns())
 
     def tells(self) -> bool:
         """Send its state once more."""
         self._sender.send(self._publisher.next_frame(0.0))
         return True
+
+    def turns(self, *, trip: bool) -> bytes:
+        """Begin another state, and send it once; return the frame."""
+        self._publisher.change(_members(self._block, self._quality, trip=trip), time.time_ns())
+        octets = self._publisher.next_frame(0.0)
+        self._sender.send(octets)
+        return octets
 
 
 def _goose(gateways: PlantGateways) -> PlantGatewayStatus:

@@ -17,28 +17,22 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from service.configuration.gateways.modbus import ModbusSettings
-from service.configuration.gateways.settings import GatewaysSettings
-from service.configuration.settings import Settings
 from service.gateways.modbus.register_map import BLOCK, FIRST_BLOCK
 from service.storage import Repository
 from testing.not_installed import not_installed
-from testing.ports import LOOPBACK, free_port
+from testing.ports import LOOPBACK
 from testing.service.conditions import FAULT, HEALTHY, tell
 from testing.service.gateways import running_gateways
 from testing.service.plants import NOW_NS
 from testing.waiting import eventually
+from tests.service.gateways.settings import settings_of
 
 FAN, PUMP = FIRST_BLOCK, FIRST_BLOCK + BLOCK
 
 
-def settings_of(directory: Path, **table: object) -> Settings:
-    modbus = ModbusSettings.model_validate({"port": free_port(), **table})
-    return Settings(data_directory=directory, stale_after_days=3650, gateways=GatewaysSettings(modbus=modbus))
-
-
 @pytest.fixture
 def port(repository: Repository, tmp_path: Path) -> Iterator[int]:
-    settings = settings_of(tmp_path, max_connections=3, idle_timeout_s=1.0)
+    settings = settings_of("modbus", tmp_path, idle_timeout_s=1.0)
     assert settings.gateways.modbus is not None
     with running_gateways(settings):
         yield settings.gateways.modbus.port
@@ -128,7 +122,7 @@ def test_a_gateway_that_is_killed_is_back_with_the_right_values(
     repository: Repository, tmp_path: Path
 ) -> None:
     tell(repository, HEALTHY)
-    settings = settings_of(tmp_path)
+    settings = settings_of("modbus", tmp_path)
     assert settings.gateways.modbus is not None
     port = settings.gateways.modbus.port
     with running_gateways(settings) as gateways:
@@ -149,7 +143,7 @@ def test_without_passwords_clients_are_named() -> None:
 
 
 def test_a_client_that_is_not_named_gets_no_answer(repository: Repository, tmp_path: Path) -> None:
-    settings = settings_of(tmp_path, clients=["10.1.0.0/16"])
+    settings = settings_of("modbus", tmp_path, clients=["10.1.0.0/16"])
     assert settings.gateways.modbus is not None
     with running_gateways(settings):
         assert figures(settings.gateways.modbus.port, 0, "") == []

@@ -6,12 +6,13 @@ import signal
 import socket
 import subprocess
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 
 from core.time_stamps import rfc3339
 from core.units import NANOSECONDS_PER_HOUR
 from service.gateways.mqtt.position import POSITION
+from service.gateways.plant_state.figures import MotorFigures
 from service.storage import Repository
 from service.storage.records.actors import SERVICE
 from service.storage.states import AlarmKind, LinkState
@@ -62,6 +63,8 @@ def test_the_state_of_motors_relays_and_alarms_is_kept_by_the_broker(
     assert (pump["mu_f"], pump["mu_f_ci95"], pump["phase"]) == (0.0121, [0.009, 0.0225], "b")
     assert (pump["quality"], pump["device_health"]) == ("good", "failure")
     assert pump["as_of"] == rfc3339(NOW_NS)
+    assert (pump["running"], pump["running_as_of"]) == ("unknown", None)
+    assert len(pump) == len(fields(MotorFigures)), "no field takes another's name"
 
 
 def test_what_is_over_is_taken_from_the_broker_even_if_it_ended_while_the_gateway_was_away(

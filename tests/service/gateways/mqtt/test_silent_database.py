@@ -27,11 +27,17 @@ def test_nothing_is_good_any_more(repository: Repository, broker: Mosquitto, tmp
     with broker.listening("#") as heard:
         asyncio.run(_tell(repository, broker, tmp_path, heard))
     data = [one for one in sparkplug.told(_of(heard, "spBv1.0/")) if one.kind in ("NDATA", "DDATA")]
-    assert [(one.kind, one.sequence) for one in data] == [("NDATA", 3), ("DDATA", 4)]
+    assert [(one.kind, one.sequence) for one in data] == [("NDATA", 3), ("DDATA", 4), ("DDATA", 5)]
     # tck-id-topics-ndata-payload
     assert data[0].value("Database/Answers") is False
-    qualities = {metric["properties"][0]["values"][0]["int_value"][0] for metric in data[1].metrics.values()}
-    assert (len(data[1].metrics), qualities) == (25, {500})
+    of_fan, of_pump = data[1:]
+    # A motor without a record has no condition that was good before: the rest alone changes.
+    of_records = {name for name in of_pump.metrics if name.startswith("Condition/")} - {"Condition/Stale"}
+    assert of_fan.metrics.keys() == of_pump.metrics.keys() - of_records
+    assert (len(of_pump.metrics), len(of_fan.metrics)) == (25, 9)
+    for device in (of_fan, of_pump):
+        qualities = {one["properties"][0]["values"][0]["int_value"][0] for one in device.metrics.values()}
+        assert qualities == {500}
 
 
 async def _tell(repository: Repository, broker: Mosquitto, directory: Path, heard: list[Heard]) -> None:
@@ -60,7 +66,7 @@ async def _tell(repository: Repository, broker: Mosquitto, directory: Path, hear
     assert await asyncio.to_thread(
         eventually, lambda: _last(heard, "statorwatch/status").get("database") == "silent"
     )
-    assert await asyncio.to_thread(eventually, lambda: len(_of(heard, "spBv1.0/")) == 5)
+    assert await asyncio.to_thread(eventually, lambda: len(_of(heard, "spBv1.0/")) == 6)
     context.stop.set()
     await asyncio.gather(*telling)
     assert set(problems) == {None}

@@ -17,10 +17,11 @@ from service.gateways.plant_state.reading import NOT_JUDGED, read_plant_state
 from service.gateways.plant_state.running_state import RunningState, running_state
 from service.storage import Repository
 from service.storage.change_counter import ChangeCounter
-from service.storage.states import LinkState
+from service.storage.states import AlarmKind, LinkState
 from testing.service.conditions import FAULT, HEALTHY, tell
 from testing.service.links import set_link_state
 from testing.service.plants import NOW_NS
+from testing.waiting import wait_until
 
 
 @pytest.fixture
@@ -50,6 +51,19 @@ def test_the_first_change_has_the_whole_plant(repository: Repository, follower: 
     assert (fan.state, fan.quality, fan.quality_reason) == (State.UNKNOWN, Quality.BAD, NOT_JUDGED)
     assert fan.device_health is DeviceHealth.CHECK_FUNCTION
     assert change.now.relays["A1_SEL710"].link is LinkState.UNKNOWN
+
+
+def test_many_open_alarms_end_no_other(repository: Repository, follower: PlantFollower) -> None:
+    """A relay raises a thousand alarms of a kind; a more urgent one comes beside them."""
+    for number in range(1000):
+        repository.raise_alarm(
+            "A1_SEL710", AlarmKind.FILE_REFUSED, f"E{number}.CEV", "cut off", now_ns=NOW_NS + number
+        )
+    assert len(next_change(follower).alarms) == 1000
+    repository.raise_alarm("A2_SEL710", AlarmKind.LINK_DOWN, "", "no answer", now_ns=NOW_NS + 10**9)
+    change = next_change(follower)
+    assert [alarm.kind for alarm in change.alarms] == [AlarmKind.LINK_DOWN]
+    assert change.alarms_gone == ()
 
 
 def test_only_what_differs_is_told_again(repository: Repository, follower: PlantFollower) -> None:
@@ -192,7 +206,7 @@ def test_a_clock_that_jumps_makes_values_old_and_good_again_and_stops_nothing(
         assert ahead.quality is Quality.UNCERTAIN
         assert ahead.quality_reason == "the latest record is of a later time than now: a clock is wrong"
         tell(repository, FAULT)
-        assert next_change(follower).now.motors["PUMP-A1"].state is State.FAULT
+        wait_until(lambda: next_change(follower).now.motors["PUMP-A1"].state is State.FAULT)
         assert follower.problem is None
     finally:
         follower.close()
