@@ -4,11 +4,13 @@ Every relay is triggered once in --period-minutes, evenly spread; of many relays
 Told: relays that were not heard of for two poll periods (missed polls), growth of the memory of all the
 service's processes after a warm-up, time from a record made (its last file in the relay) to stored, and CPU.
 --period-minutes 0 triggers nothing: connected and read only. Processes of 200 relays each simulate them, and
-their CPU time is told apart. Ends with 1 and names each limit that was broken; a run without triggers, or
+their CPU time is told apart. With --integrations the service runs its OPC UA, IEC 61850, IEC 104, Modbus and
+MQTT gateways beside it. Ends with 1 and names each limit that was broken; a run without triggers, or
 shorter than JUDGED_MINUTES, is told and not judged.
 """
 
 import argparse
+import json
 import statistics
 import subprocess
 import sys
@@ -32,6 +34,7 @@ from service.client.rest_client import ServiceClient, ServiceError
 from service.demo import MOTORS
 from service.demo.addresses import free_ports
 from testing.service import processes
+from testing.service.mosquitto import running_mosquitto
 from testing.service.processes import Service, descendants
 from testing.waiting import eventually
 
@@ -104,12 +107,16 @@ def measure(
     period_minutes: float,
     relays_per_gateway: int | None = None,
     triggered: int | None = None,
+    *,
+    with_integrations: bool = False,
 ) -> Iterator[str]:
     with tempfile.TemporaryDirectory(prefix="statorwatch-scale-") as name:
         directory = Path(name)
         scd, motors, parts = _files(directory, relays)
         own = {} if relays_per_gateway is None else {"MCC_RELAYS_PER_GATEWAY": str(relays_per_gateway)}
         with ExitStack() as running:
+            if with_integrations:
+                own["MCC_GATEWAYS"] = json.dumps(running.enter_context(_integrations(directory)))
             simulators = [running.enter_context(_simulated(part, directory)) for part in parts]
             service = running.enter_context(_served(directory, scd, motors, own))
             begun_s = time.monotonic()
@@ -126,6 +133,8 @@ def measure(
                 yield from _told(seen, minutes, spent_s, simulated_s)
                 yield from _outcome(client, seen)
                 yield f"at the end {_gateways(service)}"
+                for one in client.items("/integrations"):
+                    yield f"{one['kind']}: {one['problem'] or 'works'}, started again {one['restarts']} times"
     yield LIMITS
 
 
@@ -297,6 +306,20 @@ def _simulated(scd: Path, directory: Path) -> Iterator[int]:
 
 
 @contextmanager
+def _integrations(directory: Path) -> Iterator[Mapping[str, object]]:
+    """The table of gateways to other systems, and the broker that one of them needs."""
+    iec104, iec61850, modbus, opcua = free_ports(4)
+    with running_mosquitto(directory) as broker:
+        yield {
+            "iec104": {"port": iec104},
+            "iec61850": {"port": iec61850},
+            "modbus": {"port": modbus},
+            "mqtt": {"port": broker.port, "sparkplug": {}},
+            "opcua": {"port": opcua},
+        }
+
+
+@contextmanager
 def _served(directory: Path, scd: Path, motors: Path, own: Mapping[str, str]) -> Iterator[Service]:
     settings = {"MCC_MOTORS": str(motors), "MCC_POLL_PERIOD_S": str(POLL_PERIOD_S), **own}
     processes.START_LIMIT_S = START_LIMIT_S
@@ -311,6 +334,7 @@ def main() -> int:
     parser.add_argument("--period-minutes", type=float, default=5.0)
     parser.add_argument("--relays-per-gateway", type=int, help="the setting; its default where left out")
     parser.add_argument("--triggered", type=int, help="so many relays are triggered; all where left out")
+    parser.add_argument("--integrations", action="store_true", help="gateways to other systems run beside it")
     arguments = parser.parse_args()
     exit_when_terminated()
     seen = Seen()
@@ -321,6 +345,7 @@ def main() -> int:
         arguments.period_minutes,
         arguments.relays_per_gateway,
         arguments.triggered,
+        with_integrations=arguments.integrations,
     )
     for line in lines:
         print(line, flush=True)

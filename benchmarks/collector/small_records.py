@@ -6,14 +6,17 @@ its rows in the database, is told by record_cost.
 
 import argparse
 import statistics
+import sys
 import tempfile
 import time
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from mms import Client
-from service.collector.records.listing import FolderListing, ListedRecord, understand
-from service.collector.records.pull import pull
+from service.collector.records.batch import Batch
+from service.collector.records.life import RecordState
+from service.collector.records.listing import FolderListing, ListedRecord, files_by_name, understand
+from service.collector.records.pull import DailyAllowance
 from service.recording_store.folder import FolderStore
 from testing.ports import LOOPBACK
 from testing.relays.serving import RelayProcess
@@ -76,13 +79,29 @@ def _fetched_s(client: Client, listed: Sequence[ListedRecord]) -> float:
 
 def _stored_s(client: Client, listed: Sequence[ListedRecord], directory: Path) -> float:
     with tempfile.TemporaryDirectory(dir=directory) as root:
-        store = FolderStore(Path(root))
         begun_s = time.perf_counter()
-        for record in listed:
-            with store.incoming() as incoming:
-                pull(client, record, incoming, max_file_bytes=SAMPLES_BYTES, on_bytes=lambda _: None)
-                incoming.keep()
+        with Batch(
+            client,
+            FolderStore(Path(root)),
+            DailyAllowance(sys.maxsize),
+            max_file_bytes=SAMPLES_BYTES,
+            on_bytes=lambda _: None,
+            listing_s=0.0,
+        ) as batch:
+            for record in listed:
+                if batch.is_due():
+                    _keep(client, batch)
+                batch.fetch(RecordState(record))
+            _keep(client, batch)
         return time.perf_counter() - begun_s
+
+
+def _keep(client: Client, batch: Batch) -> None:
+    confirmed, failed = batch.checked(files_by_name([FolderListing(FOLDER, client.files(FOLDER))]))
+    assert not failed
+    for _, on_disk in batch.kept(confirmed):
+        on_disk()
+    batch.clear()
 
 
 def main() -> None:

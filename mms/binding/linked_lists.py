@@ -1,7 +1,34 @@
-"""Reading of the library's linked lists."""
+"""The library's linked lists, read and made."""
 
 import ctypes
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+
+
+@contextmanager
+def list_of_names(lib: ctypes.CDLL, names: Sequence[bytes]) -> Iterator[int]:
+    """Make a list of names, which lasts as long as the block.
+
+    Parameters
+    ----------
+    lib : ctypes.CDLL
+        The library.
+    names : sequence of bytes
+        The names, without NUL.
+
+    Yields
+    ------
+    int
+        Pointer to a LinkedList of C strings.
+    """
+    kept = [ctypes.create_string_buffer(name) for name in names]
+    linked_list = lib.LinkedList_create()
+    try:
+        for name in kept:
+            lib.LinkedList_add(linked_list, ctypes.addressof(name))
+        yield linked_list
+    finally:
+        lib.LinkedList_destroyStatic(linked_list)  # the names are Python's
 
 
 def take_names(lib: ctypes.CDLL, linked_list: int | None) -> list[str]:

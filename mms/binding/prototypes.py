@@ -67,6 +67,8 @@ Authenticator = CFUNCTYPE(c_bool, c_void_p, c_void_p, c_void_p, c_void_p)
 
 PROTOTYPES: Final[dict[str, tuple[object, list[object]]]] = {
     # linked lists
+    "LinkedList_create": (c_void_p, []),
+    "LinkedList_add": (None, [c_void_p, c_void_p]),
     "LinkedList_getNext": (c_void_p, [c_void_p]),
     "LinkedList_getData": (c_void_p, [c_void_p]),
     "LinkedList_destroy": (None, [c_void_p]),
@@ -153,6 +155,7 @@ PROTOTYPES: Final[dict[str, tuple[object, list[object]]]] = {
     ),
     "MmsConnection_readNamedVariableListDirectory": (c_void_p, [c_void_p, _ERROR, c_char_p, c_char_p, _FLAG]),
     "MmsVariableAccessSpecification_destroy": (None, [c_void_p]),
+    "MmsConnection_readMultipleVariables": (c_void_p, [c_void_p, _ERROR, c_char_p, c_void_p]),
     "MmsConnection_readNamedVariableListValues": (c_void_p, [c_void_p, _ERROR, c_char_p, c_char_p, c_bool]),
     # client: reports
     "IedConnection_getRCBValues": (c_void_p, [c_void_p, _ERROR, c_char_p, c_void_p]),
@@ -258,6 +261,8 @@ PROTOTYPES: Final[dict[str, tuple[object, list[object]]]] = {
     "IedServer_unlockDataModel": (None, [c_void_p]),
     "IedServer_getAttributeValue": (c_void_p, [c_void_p, c_void_p]),
     "IedServer_updateAttributeValue": (None, [c_void_p, c_void_p, c_void_p]),
+    "MmsValue_update": (c_bool, [c_void_p, c_void_p]),
+    "MmsValue_equals": (c_bool, [c_void_p, c_void_p]),
     # server: controls
     "IedServer_setControlHandler": (None, [c_void_p, c_void_p, ControlHandler, c_void_p]),
     "IedServer_setWaitForExecutionHandler": (None, [c_void_p, c_void_p, WaitForExecutionHandler, c_void_p]),

@@ -1,17 +1,18 @@
 """MMS client of one relay: the ACSI services of IEC 61850-7-2 as methods, mapped by IEC 61850-8-1."""
 
 import queue
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from types import TracebackType
 from typing import Self
 
 from mms.client import controls
 from mms.client.connection import Connection
-from mms.client.data_values import DataSetMember, read_data_set, read_value
+from mms.client.data_values import DataSetMember, read_data_set, read_together, read_value
 from mms.client.files import FileEntry, Sink, download, list_files
 from mms.client.limits import DEFAULT_LIMITS, ClientLimits
 from mms.client.model_browser import ModelBrowser
 from mms.client.reports import Report, Subscriptions
+from mms.errors import MmsError
 from mms.references import FunctionalConstraint
 from mms.security.tls import TlsConfiguration
 from mms.values import Value
@@ -177,6 +178,38 @@ class Client(ModelBrowser):
         IEC 61850-7-2, GetDataValues.
         """
         return read_value(self._connection, reference, constraint)
+
+    def read_together(
+        self, references: Sequence[str], constraint: FunctionalConstraint
+    ) -> tuple[Value | MmsError, ...]:
+        """Read several data attributes of one logical device in one request.
+
+        Parameters
+        ----------
+        references : sequence of str
+            References "LD/LN.DO.DA", all of one logical device, one at least.
+        constraint : FunctionalConstraint
+            Functional constraint of what is read.
+
+        Returns
+        -------
+        tuple of Value or MmsError
+            The values in order; the error, not raised, of each that the relay does not give.
+
+        Raises
+        ------
+        MmsError
+            The relay does not answer, or refuses the request as a whole, as one that cannot read lists does.
+        ProtocolError
+            The relay answers with something else than so many values.
+        ValueError
+            The references are of several logical devices, or there are none, or more than 64.
+
+        References
+        ----------
+        ISO 9506-2, Read with a listOfVariable.
+        """
+        return read_together(self._connection, references, constraint)
 
     def read_data_set(self, reference: str) -> tuple[DataSetMember, ...]:
         """Read the values of all members of a data set in one request.

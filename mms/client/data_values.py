@@ -1,10 +1,12 @@
 """Reading of data (IEC 61850-7-2 GetDataValues and GetDataSetValues)."""
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
 from mms import errors
+from mms.binding.linked_lists import list_of_names
 from mms.binding.value_conversion import decode
 from mms.client.connection import Connection
 from mms.references import FunctionalConstraint, object_reference, variable_name
@@ -18,6 +20,9 @@ _ACCESS_ERRORS: Final[dict[DataAccessError, type[errors.MmsError]]] = {
     DataAccessError.UNDEFINED: errors.NotFound,
     DataAccessError.NON_EXISTENT: errors.NotFound,
 }
+_MOST_TOGETHER: Final = (
+    64  # a request of as many of the longest names fits into the smallest usual PDU of 8 kB
+)
 _ARRAY_ELEMENT: Final = re.compile(rb"([^(]+)\(([0-9]+)\)(?:\$(.+))?")
 
 
@@ -69,9 +74,66 @@ def read_value(connection: Connection, reference: str, constraint: FunctionalCon
     finally:
         lib.MmsValue_delete(pointer)
     if isinstance(value, DataAccessError):
-        kind = _ACCESS_ERRORS.get(value, errors.ValueRefused)
-        raise kind(connection.host, operation, value.value, value.name.lower().replace("_", " "))
+        raise _refusal(connection, operation, value)
     return value
+
+
+def read_together(
+    connection: Connection, references: Sequence[str], constraint: FunctionalConstraint
+) -> tuple[Value | errors.MmsError, ...]:
+    """Read several data attributes of one logical device in one request.
+
+    Parameters
+    ----------
+    connection : Connection
+        The association with the relay.
+    references : sequence of str
+        References "LD/LN.DO.DA", all of one logical device, one at least.
+    constraint : FunctionalConstraint
+        Functional constraint of what is read.
+
+    Returns
+    -------
+    tuple of Value or MmsError
+        The values in order; the error, not raised, of each that the relay does not give.
+
+    Raises
+    ------
+    MmsError
+        The relay does not answer, or refuses the request as a whole.
+    ProtocolError
+        The relay answers with something else than so many values.
+    ValueError
+        The references are of several logical devices, or there are none, or more than 64.
+
+    References
+    ----------
+    ISO 9506-2, Read with a listOfVariable.
+    """
+    names = [variable_name(reference, constraint) for reference in references]
+    domains = sorted({domain for domain, _ in names})
+    if len(domains) != 1:
+        raise ValueError(f"expected references of one logical device, found those of {len(domains)}")
+    if len(names) > _MOST_TOGETHER:
+        raise ValueError(f"expected at most {_MOST_TOGETHER} references, found {len(names)}")
+    operation = f"read {len(names)} values of {domains[0].decode('latin-1')}[{constraint.name}]"
+    lib = connection.lib
+    with list_of_names(lib, [item for _, item in names]) as items:
+        pointer = connection.request(operation, lib.MmsConnection_readMultipleVariables, domains[0], items)
+    try:
+        values = _decode(connection, operation, pointer)
+    finally:
+        lib.MmsValue_delete(pointer)
+    if not isinstance(values, tuple) or len(values) != len(names):
+        raise errors.ProtocolError(
+            connection.host, operation, 0, f"expected {len(names)} values, found {values!r:.80}"
+        )
+    return tuple(
+        _refusal(connection, f"read {reference}[{constraint.name}]", value)
+        if isinstance(value, DataAccessError)
+        else value
+        for reference, value in zip(references, values, strict=True)
+    )
 
 
 def read_data_set(
@@ -153,6 +215,11 @@ def request_value(
     return connection.request(
         operation, lib.MmsConnection_readSingleArrayElementWithComponent, domain, array, int(index), component
     )
+
+
+def _refusal(connection: Connection, operation: str, error: DataAccessError) -> errors.MmsError:
+    kind = _ACCESS_ERRORS.get(error, errors.ValueRefused)
+    return kind(connection.host, operation, error.value, error.name.lower().replace("_", " "))
 
 
 def _decode(connection: Connection, operation: str, pointer: int | None) -> Value:

@@ -1,7 +1,7 @@
 """The files of one record while they arrive, in a folder of this host."""
 
 from collections.abc import Callable, Iterator
-from contextlib import closing, contextmanager
+from contextlib import contextmanager
 from pathlib import Path
 
 from service.recording_store.arriving_file import ArrivingFile
@@ -14,24 +14,31 @@ Keep = Callable[[Path, str, tuple[StoredFile, ...]], StoredRecording]
 
 
 class Incoming:
-    """The files of one record while they arrive. `keep` moves them to their place."""
+    """The files of one record while they arrive. `keep` moves them to their place; `close` always follows."""
 
     def __init__(self, directory: Path, keep: Keep) -> None:
         self._directory = directory
         self._keep = keep
         self._files: dict[str, StoredFile] = {}
+        self._unsynced: list[ArrivingFile] = []
 
     @contextmanager
     def create(self, name: str) -> Iterator[ArrivingFile]:
-        """Open a new file, which is on disk when the block ends. Raises RecordingStoreError (bad name)."""
+        """Open a new file, which is whole when the block ends. Raises RecordingStoreError (bad name)."""
         path = self._directory / safe_name(name)
         try:
             sink = ArrivingFile(path)
         except FileExistsError as error:
             raise RecordingStoreError(f"{name!r}: this record already has a file {path.name}") from error
-        with closing(sink):
-            yield sink
-            self._files[path.name] = sink.finish()
+        self._unsynced.append(sink)  # it stays open: only this descriptor is told of an error in its writing
+        yield sink
+        self._files[path.name] = sink.finish()
+
+    def sync(self) -> None:
+        """Have the files on disk, as `keep` does. After an error nothing may be kept. Raises OSError."""
+        for sink in self._unsynced:
+            sink.sync()
+        self.close()
 
     def sha256(self, name: str) -> str:
         """Return the SHA-256 of a file that was created here, hexadecimal."""
@@ -44,4 +51,10 @@ class Incoming:
         """
         files = tuple(self._files[name] for name in sorted(self._files))
         entry_name(self._files)
+        self.sync()
         return self._keep(self._directory, manifest_digest(files), files)
+
+    def close(self) -> None:
+        """Close the files, as far as they have come."""
+        while self._unsynced:
+            self._unsynced.pop().close()

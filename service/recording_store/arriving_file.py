@@ -8,7 +8,7 @@ from service.recording_store.contents import StoredFile
 
 
 class ArrivingFile:
-    """Takes the bytes of a new file in their order. `finish` has it on disk; `close` always follows.
+    """Takes the bytes of a new file in their order. `finish`, then `sync`; `close` always follows.
 
     Its methods raise OSError where the disk does.
     """
@@ -28,10 +28,13 @@ class ArrivingFile:
         return len(chunk)
 
     def finish(self) -> StoredFile:
-        """Return what the file is, once it is on disk."""
+        """Return what the file is, all of which the system has."""
         self._file.flush()
-        os.fsync(self._file.fileno())
         return StoredFile(self._path.name, self._size_bytes, self._sha256.hexdigest())
+
+    def sync(self) -> None:
+        """Have it on disk."""
+        os.fsync(self._file.fileno())
 
     def close(self) -> None:
         """Close the file, as far as it has come."""

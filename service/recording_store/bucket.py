@@ -11,7 +11,7 @@ whoever adds its row asks for while nobody may delete it. Files pass through a f
 import shutil
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from functools import partial
 from itertools import groupby
@@ -94,8 +94,8 @@ class BucketStore(RecordingStore):
 
     @contextmanager
     def incoming(self) -> Iterator[Incoming]:
-        with _folder(self._scratch) as directory:
-            yield Incoming(directory, self._keep)
+        with _folder(self._scratch) as directory, closing(Incoming(directory, self._keep)) as incoming:
+            yield incoming
 
     def find(self, digest: str) -> StoredRecording:
         with _folder(self._scratch) as directory:

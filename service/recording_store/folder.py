@@ -12,7 +12,7 @@ import os
 import shutil
 import uuid
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from pathlib import Path
 
 from service.recording_store.arriving import Incoming
@@ -66,7 +66,8 @@ class FolderStore(RecordingStore):
         directory = self._incoming / uuid.uuid4().hex
         directory.mkdir()
         try:
-            yield Incoming(directory, self._keep)
+            with closing(Incoming(directory, self._keep)) as incoming:
+                yield incoming
         finally:
             shutil.rmtree(directory, ignore_errors=True)
 

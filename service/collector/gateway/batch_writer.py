@@ -7,6 +7,7 @@ what cannot wait: the renewal of their leases.
 import time
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
+from functools import partial
 from queue import SimpleQueue
 from typing import Generic, TypeVar
 
@@ -43,13 +44,16 @@ class BatchRefusedError(RuntimeError):
 class BatchWriter:
     """Collect items from the threads of the sessions, and write them from a thread of its own."""
 
-    def __init__(self, repository: Repository, *, period_s: float = PERIOD_S) -> None:
+    def __init__(
+        self, repository: Repository, *, gateway: str | None = None, period_s: float = PERIOD_S
+    ) -> None:
         """Prepare the thread.
 
+        gateway: writes the states of those links alone that it holds then; None where there are no leases.
         period_s: between transactions.
         """
         self._samples = _Batch("measured values", repository.add_samples)
-        self._notes = _Batch("notes of links", repository.note_links)
+        self._notes = _Batch("notes of links", partial(repository.note_links, gateway=gateway))
         self._findings: _Batch[RelayFindings] = _Batch(
             "what was found at relays", lambda findings: repository.note_findings(*findings)
         )

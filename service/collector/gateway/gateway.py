@@ -90,7 +90,7 @@ class Gateway:
         self._ending: dict[str, _SessionThread] = {}
         self._quarantined: dict[str, UnansweredRequests] = {}
         self._to_start: set[str] = set()
-        self._batches = BatchWriter(repository)
+        self._batches = BatchWriter(repository, gateway=identity.id)
         self._registered = False
         self._next_renewal_s = 0.0
         self._dispatcher = PeriodicWorker("the dispatcher", self._dispatch, period_s=REQUEST_PERIOD_S)

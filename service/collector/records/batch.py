@@ -3,11 +3,16 @@
 A relay whose numbering begins anew writes a new record over an old one of the same name, maybe while that is
 fetched: a .CFG of one record would come with the .DAT of another. So the relay is asked for its listing once
 more before anything is kept. One listing serves all records that were fetched within a short time.
+
+To have a record on disk takes longer than to fetch a small one, nearly all of it waiting. So several threads
+do it: a file system writes its journal once for all who wait for it.
 """
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from concurrent.futures import Executor, Future, ThreadPoolExecutor, wait
 from contextlib import ExitStack
+from functools import cache
 from hashlib import sha256
 from types import TracebackType
 from typing import Self
@@ -16,8 +21,10 @@ from mms import Client
 from service.collector.records.errors import RecordReplacedError
 from service.collector.records.life import RecordState
 from service.collector.records.listing import ListedFile, ListedRecord
+from service.collector.records.policy import PULL_FAILURES, VISIT_ENDS, failure_of
 from service.collector.records.pull import DailyAllowance, beyond_its_end, pull
 from service.recording_store.arriving import Incoming
+from service.recording_store.recording import StoredRecording
 from service.recording_store.store import RecordingStore
 
 BATCH_S = 0.25
@@ -25,6 +32,15 @@ BATCH_S = 0.25
 
 LISTINGS_A_BATCH = 4.0
 """It waits so many times as long as a listing takes, where that is longer."""
+
+WRITTEN_AT_ONCE = 8
+"""Records that a process has on disk at a time, beside those that sessions write alone."""
+
+
+@cache
+def _writers() -> Executor:
+    """Return the threads that wait for the disk, for all sessions of this process."""
+    return ThreadPoolExecutor(WRITTEN_AT_ONCE, thread_name_prefix="record-writer")
 
 
 class Batch:
@@ -49,6 +65,8 @@ class Batch:
         self._lasts_s = max(BATCH_S, LISTINGS_A_BATCH * listing_s)
         self._places = ExitStack()
         self._fetched: list[tuple[RecordState, Incoming]] = []
+        self._syncing: dict[Incoming, Future[None]] = {}
+        self._keeping: list[Future[StoredRecording]] = []
         self._began_s = 0.0
 
     def __enter__(self) -> Self:
@@ -70,7 +88,11 @@ class Batch:
 
     def clear(self) -> None:
         """Forget the records; remove the files of those that were not kept."""
+        wait(self._syncing.values())
+        wait(self._keeping)
         self._fetched.clear()
+        self._syncing.clear()
+        self._keeping.clear()
         self._places.close()
 
     def fetch(self, state: RecordState) -> None:
@@ -88,14 +110,58 @@ class Batch:
         for file in state.record.files:
             self._allowance.charge(beyond_its_end(file.size), time.time_ns())
         self._fetched.append((state, incoming))
+        if len(self._fetched) > 1:  # one alone waits for nobody
+            self._syncing[incoming] = _writers().submit(incoming.sync)
 
-    def check(self, record: ListedRecord, incoming: Incoming, listed: Mapping[str, ListedFile]) -> None:
-        """Check that the relay still has the files that were fetched, by those it lists now, by their names.
+    def kept(
+        self, records: Iterable[tuple[RecordState, Incoming]]
+    ) -> Iterator[tuple[RecordState, Callable[[], StoredRecording]]]:
+        """Have these of the records moved to their places, and yield each with what waits for it.
+
+        That raises OSError, RecordingStoreError.
+        """
+        chosen = list(records)
+        if len(chosen) == 1:
+            ((state, incoming),) = chosen
+            yield state, lambda: self._on_disk(incoming)
+            return
+        keeping = [_writers().submit(self._on_disk, incoming) for _, incoming in chosen]
+        self._keeping += keeping
+        for (state, _), kept in zip(chosen, keeping, strict=True):
+            yield state, kept.result
+
+    def _on_disk(self, incoming: Incoming) -> StoredRecording:
+        """Keep a record whose files may be on their way to the disk."""
+        if incoming in self._syncing:
+            self._syncing[incoming].result()  # of its error the files themselves tell once only
+        return incoming.keep()
+
+    def checked(
+        self, listed: Mapping[str, ListedFile]
+    ) -> tuple[list[tuple[RecordState, Incoming]], list[tuple[RecordState, Exception]]]:
+        """Return the records that the relay still has as they were fetched, and those of which it does not.
+
+        Each of the others has its error. After one that ends the visit no more is checked.
+        listed: the files that the relay lists now, by their names.
+        """
+        confirmed: list[tuple[RecordState, Incoming]] = []
+        failed: list[tuple[RecordState, Exception]] = []
+        for state, incoming in self._fetched:
+            try:
+                self._check(state.record, incoming, listed)
+            except PULL_FAILURES as error:
+                failed.append((state, error))
+                if failure_of(error) in VISIT_ENDS:
+                    break
+            else:
+                confirmed.append((state, incoming))
+        return confirmed, failed
+
+    def _check(self, record: ListedRecord, incoming: Incoming, listed: Mapping[str, ListedFile]) -> None:
+        """Raise RecordReplacedError where the relay no longer has the files that were fetched; MmsError.
 
         A file without a time looks the same when it is replaced. The configuration is then fetched once more:
         it tells when the record began, so that of another record it differs.
-
-        Raises RecordReplacedError, MmsError.
         """
         for file in record.files:
             now = listed.get(file.remote_name)

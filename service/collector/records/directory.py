@@ -35,8 +35,8 @@ from service.collector.records.pull import DailyAllowance
 from service.collector.records.scan import Scan
 from service.configuration.settings import Settings
 from service.plant import Relay
-from service.recording_store.arriving import Incoming
 from service.recording_store.errors import StoreUnreachableError
+from service.recording_store.recording import StoredRecording
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from service.storage.errors import FolderGoneError
@@ -322,17 +322,19 @@ class RecordDirectory:
             for state, _ in batch.fetched:
                 self._fail(state, error, claim)
         else:
-            for state, incoming in batch.fetched:
+            confirmed, failed = batch.checked(listed)
+            for state, on_disk in batch.kept(confirmed):
                 try:
-                    batch.check(state.record, incoming, listed)
-                    self._keep(state, incoming, claim)
+                    self._keep(state, on_disk, claim)
                 except PULL_FAILURES as error:
                     self._fail(state, error, claim)
+            for state, reason in failed:
+                self._fail(state, reason, claim)
         batch.clear()
 
-    def _keep(self, state: RecordState, incoming: Incoming, claim: ClaimRequest) -> None:
+    def _keep(self, state: RecordState, on_disk: Callable[[], StoredRecording], claim: ClaimRequest) -> None:
         try:
-            self._ledger.keep(state, incoming.keep(), claim(state.remote))
+            self._ledger.keep(state, on_disk(), claim(state.remote))
         except FolderGoneError as error:  # somebody deleted the same content just now
             log.info("record pulled once more", relay=self._relay, record=state.name, reason=str(error))
 

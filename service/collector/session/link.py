@@ -9,13 +9,17 @@ from sqlalchemy.exc import SQLAlchemyError
 from service.collector.records.pull import DailyAllowance
 from service.collector.session.notes import Notes
 from service.collector.session.session_policy import SESSION_POLICY
-from service.storage.records import LinkNote, LinkTraffic
+from service.storage.records import LinkNote, LinkTraffic, Quarantine
 from service.storage.states import LinkState
 
 log = structlog.get_logger(__name__)
 
 NOTE_PERIOD_S = 1.0
 """The figures of a link that stays up are written this often at most."""
+
+
+STATE_PERIOD_S = 60.0
+"""A link that stays up says so again: another host may have said late that its gateway is gone."""
 
 
 class Link:
@@ -40,6 +44,7 @@ class Link:
         self._notes = notes
         self._reminder_s = reminder_s
         self._written_s: float | None = None
+        self._stated_s = 0.0
         self._told_ns = 0
         self._remark: str | None = None
         self._failure_logged: tuple[str, float] | None = None
@@ -71,9 +76,11 @@ class Link:
     def answered(self, round_trip_s: float | None, remark: str | None = None) -> None:
         """Note that the relay answered. remark: what it cannot give at present. Raises SQLAlchemyError."""
         now_s, self._told_ns = time.monotonic(), time.time_ns()
-        if self._written_s is None or remark != self._remark:
+        is_new = self._written_s is None or remark != self._remark
+        if is_new or now_s - self._stated_s >= STATE_PERIOD_S:
             self._note(round_trip_s, LinkState.UP, remark)
-        elif now_s - self._written_s >= NOTE_PERIOD_S:
+            self._stated_s = now_s
+        elif self._written_s is not None and now_s - self._written_s >= NOTE_PERIOD_S:
             self._note(round_trip_s)
         else:
             return
@@ -91,9 +98,16 @@ class Link:
     def failed(self, reason: str) -> None:
         """Note that the link is down, and why."""
         self._log_failure(reason)
-        self._told_ns = time.time_ns()
+        self._ended(LinkState.DOWN, reason, time.time_ns())
+
+    def set_aside(self, quarantine: Quarantine) -> None:
+        """Have the last word on the link, which is down and set aside: notes of this visit may still wait."""
+        self._ended(LinkState.QUARANTINED, quarantine.link_reason, quarantine.since_ns)
+
+    def _ended(self, state: LinkState, reason: str, now_ns: int) -> None:
+        self._told_ns = now_ns
         try:
-            self._note(None, LinkState.DOWN, reason)
+            self._note(None, state, reason)
         except SQLAlchemyError:
             log.exception("database does not answer, trying again")
 

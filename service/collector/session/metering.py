@@ -1,8 +1,13 @@
-"""Samples the values that a relay measures, one request after the other, at a set period."""
+"""Samples the values that a relay measures at a set period, many with one request where it can do that.
+
+A relay that refuses a request of many values, or ends the link at its first one, is asked for one value after
+the other from then on.
+"""
 
 import math
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from itertools import groupby
 
 import structlog
 
@@ -10,9 +15,12 @@ from mms import (
     AccessDenied,
     Client,
     FunctionalConstraint,
+    MmsError,
     NotFound,
+    RequestRejected,
     ServiceFailed,
     TemporarilyUnavailable,
+    Value,
 )
 from service.plant import Measurand, Relay
 from service.storage.records import Sample
@@ -25,7 +33,11 @@ LARGEST_POWER_OF_TEN = 24
 STATISTICS_PERIOD_S = 60.0
 """The relay's own statistics, which are many and change slowly, are sampled this often."""
 
+MOST_TOGETHER = 20
+"""Values of one request. Names of 40 octets fill a kilobyte; the smallest relays take two."""
+
 NOT_OFFERED = (AccessDenied, NotFound)
+REFUSALS = (*NOT_OFFERED, ServiceFailed, TemporarilyUnavailable)
 
 
 class Metering:
@@ -50,6 +62,7 @@ class Metering:
         self._offered = self._measurands
         self._factors: dict[Measurand, float] = {}
         self._logged: set[Measurand] = set()
+        self._reads_together: bool | None = None  # not tried yet
         self._next_s = 0.0
         self._next_statistics_s = 0.0
         self._took_s = {True: 0.0, False: 0.0}
@@ -91,35 +104,66 @@ class Metering:
             self._on_sample(Sample(self._motor, time.time_ns(), values))
 
     def _values(self, client: Client, *, with_statistics: bool) -> dict[str, float]:
+        wanted = [one for one in self._offered if with_statistics or not one.quantity.is_statistic]
         values: dict[str, float] = {}
         left_out: dict[Measurand, str] = {}
-        offered = []
-        for measurand in self._offered:
+        gone: set[Measurand] = set()
+        for measurand, found in self._read(client, wanted):
             try:
-                if with_statistics or not measurand.quantity.is_statistic:
-                    value = self._value(client, measurand)
-                    if value is not None:
-                        values[measurand.quantity] = value
+                if isinstance(found, MmsError):
+                    raise found
+                factor = self._factor(client, measurand)
             except NOT_OFFERED as error:
                 left_out[measurand] = str(error)
-                continue
+                gone.add(measurand)
             except ServiceFailed as error:
                 left_out[measurand] = str(error)
             except TemporarilyUnavailable:
                 pass
-            offered.append(measurand)
-        self._offered = tuple(offered)
+            else:
+                if isinstance(found, int | float) and math.isfinite(found):
+                    values[measurand.quantity] = float(found) * factor
+        self._offered = tuple(one for one in self._offered if one not in gone)
         self._log_missing(left_out)
         return values
 
-    def _value(self, client: Client, measurand: Measurand) -> float | None:
-        """Read a value in plain units; None where it is no number."""
-        value = client.read(measurand.reference, FunctionalConstraint.MX)
+    def _read(
+        self, client: Client, measurands: Iterable[Measurand]
+    ) -> Iterator[tuple[Measurand, Value | MmsError]]:
+        """Yield each with its value, or with why the relay gives none. Raises MmsError (the link)."""
+        for part in _parts(measurands):
+            together = self._read_together(client, part) if len(part) > 1 else None
+            if together is not None:
+                yield from zip(part, together, strict=True)
+            else:
+                for one in part:
+                    yield one, _read_alone(client, one.reference)
+
+    def _read_together(
+        self, client: Client, measurands: Sequence[Measurand]
+    ) -> tuple[Value | MmsError, ...] | None:
+        """Return what one request gives; None where the relay cannot do that. Raises MmsError (the link)."""
+        if self._reads_together is False:
+            return None
+        try:
+            found = client.read_together([one.reference for one in measurands], FunctionalConstraint.MX)
+        except (*REFUSALS, RequestRejected) as error:
+            # One that has given many before is only busy now.
+            self._reads_together = self._reads_together or False
+            log.info("the relay gives one value at a time", relay=self._relay.name, reason=str(error))
+            return None
+        except MmsError:
+            # A relay that ends the link at its first such request is not asked so again when it is back.
+            self._reads_together = self._reads_together or False
+            raise
+        self._reads_together = True
+        return found
+
+    def _factor(self, client: Client, measurand: Measurand) -> float:
+        """Return by how much the relay's values have to be multiplied for plain units."""
         if measurand not in self._factors:
-            self._factors[measurand] = _factor(client, measurand)
-        if isinstance(value, int | float) and math.isfinite(value):
-            return float(value) * self._factors[measurand]
-        return None
+            self._factors[measurand] = _factor_of(client, measurand)
+        return self._factors[measurand]
 
     def _log_missing(self, reasons: Mapping[Measurand, str]) -> None:
         """Log what is missing, once a connection."""
@@ -131,7 +175,22 @@ class Metering:
             )
 
 
-def _factor(client: Client, measurand: Measurand) -> float:
+def _parts(measurands: Iterable[Measurand]) -> Iterator[Sequence[Measurand]]:
+    """Yield them in parts of one logical device each, not too many together."""
+    for _, group in groupby(measurands, key=lambda one: one.reference.partition("/")[0]):
+        of_device = list(group)
+        for begin in range(0, len(of_device), MOST_TOGETHER):
+            yield of_device[begin : begin + MOST_TOGETHER]
+
+
+def _read_alone(client: Client, reference: str) -> Value | MmsError:
+    try:
+        return client.read(reference, FunctionalConstraint.MX)
+    except REFUSALS as error:
+        return error
+
+
+def _factor_of(client: Client, measurand: Measurand) -> float:
     if measurand.multiplier is None:
         return 1.0
     try:

@@ -8,6 +8,7 @@ import structlog
 from service.collector.session.quarantine import QuarantinePolicy, quarantine_relay
 from service.collector.session.session_policy import SESSION_POLICY, SessionPolicy
 from service.storage import Repository
+from service.storage.records import Quarantine
 
 log = structlog.get_logger(__name__)
 
@@ -56,14 +57,13 @@ class ProtocolFaultCounter:
             self._probation_s = None
             log.info("relay trusted again", relay=self._relay)
 
-    def count_fault(self, reason: str) -> bool:
+    def count_fault(self, reason: str) -> Quarantine | None:
         """Count a visit that ended by a broken protocol.
 
-        Returns whether the relay is quarantined now. Raises SQLAlchemyError.
+        Returns the quarantine, if there is one now. Raises SQLAlchemyError.
         """
         self._faults += 1
         if self._faults < self._policy.faults_in_a_row:
-            return False
+            return None
         why = f"it broke the protocol {self._faults} times in a row, at last: {reason}"
-        quarantine_relay(self._repository, self._relay, why, self._quarantine)
-        return True
+        return quarantine_relay(self._repository, self._relay, why, self._quarantine)

@@ -40,9 +40,10 @@ class QuarantinePolicy:
         return max(self.probation_s, quarantine.pause_s)
 
 
-def quarantine_relay(repository: Repository, relay: str, reason: str, policy: QuarantinePolicy) -> None:
+def quarantine_relay(repository: Repository, relay: str, reason: str, policy: QuarantinePolicy) -> Quarantine:
     """Leave a relay alone for a while. Raises SQLAlchemyError."""
     quarantine = repository.set_aside(relay, reason, backoff=policy.backoff, now_ns=time.time_ns())
     log.error(
         "relay set aside", relay=relay, reason=reason, times=quarantine.times, pause_s=quarantine.pause_s
     )
+    return quarantine

@@ -36,7 +36,7 @@ from service.configuration.settings import Settings
 from service.plant import Relay
 from service.recording_store.store import RecordingStore
 from service.storage import LeaseLostError, Repository
-from service.storage.records import Sample
+from service.storage.records import Quarantine, Sample
 from service.timing.backoff import RestartDelay
 from service.timing.database_silence import database_trouble
 
@@ -200,17 +200,22 @@ class RelaySession:
         """
         if self._stopping.is_set():
             return True
-        self._note_failure(trouble, reason)
-        if not broken:
-            return True
+        quarantine = self._count_fault(reason) if broken else None
+        if quarantine is None:
+            self._link.failed(reason)
+        else:
+            self._link.set_aside(quarantine)
+        self._tell_those_who_wait(trouble, reason)
+        return quarantine is None
+
+    def _count_fault(self, reason: str) -> Quarantine | None:
         try:
-            return not self._protocol_faults.count_fault(reason)
+            return self._protocol_faults.count_fault(reason)
         except SQLAlchemyError:
             log.exception("database does not answer, trying again")
-            return True
+            return None
 
-    def _note_failure(self, trouble: str, reason: str) -> None:
-        self._link.failed(reason)
+    def _tell_those_who_wait(self, trouble: str, reason: str) -> None:
         try:
             self._triggers.link_failed(f"{trouble}: {reason}")
         except SQLAlchemyError:

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from datetime import UTC, datetime
 
 from core.units import NANOSECONDS_PER_SECOND
 from service.storage.states import ClockQuality, LinkState
@@ -34,6 +35,12 @@ class Quarantine:
     def pause_s(self) -> float:
         """Return for how long the relay is set aside [s]."""
         return (self.until_ns - self.since_ns) / NANOSECONDS_PER_SECOND
+
+    @property
+    def link_reason(self) -> str:
+        """Return what the relay's link says of it while it is set aside."""
+        until = datetime.fromtimestamp(self.until_ns // NANOSECONDS_PER_SECOND, UTC)
+        return f"set aside until {until:%Y-%m-%dT%H:%M:%SZ}: {self.reason}"
 
     def holds(self, now_ns: int) -> bool:
         """Tell whether the relay is to be left alone at `now_ns`, by a clock that may have been set since.

@@ -177,3 +177,22 @@ def test_all_types_are_read_at_once(shared: tuple[Server, Client]) -> None:
 def test_access_to_what_is_no_data_is_refused_in_words(client: Client) -> None:
     with pytest.raises((AccessDenied, NotFound)):
         client.read("T1PRO/GGIO1.Ind01.stVal", FunctionalConstraint.SP)
+
+
+def test_several_values_come_with_one_request(client: Client) -> None:
+    references = ["T1PRO/GGIO1.Ind01.stVal", "T1PRO/GGIO1.Ind99.stVal", "T1PRO/GGIO1.Ind02.stVal"]
+    first, missing, last = client.read_together(references, ST)
+    assert [first, last] == [client.read(one, ST) for one in (references[0], references[2])]
+    assert isinstance(missing, NotFound)
+    assert "read T1PRO/GGIO1.Ind99.stVal[ST]" in str(missing)
+    assert client.read_together(references[:1], ST) == (first,)
+    (alone,) = client.read_together(references[1:2], ST)
+    assert isinstance(alone, NotFound)
+
+
+def test_values_of_several_devices_none_or_too_many_are_no_request(client: Client) -> None:
+    for references in ([], ["T1PRO/GGIO1.Ind01.stVal", "T1CON/GGIO1.Ind01.stVal"]):
+        with pytest.raises(ValueError, match="one logical device"):
+            client.read_together(references, ST)
+    with pytest.raises(ValueError, match="at most 64"):
+        client.read_together(["T1PRO/GGIO1.Ind01.stVal"] * 65, ST)

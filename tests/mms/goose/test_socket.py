@@ -6,8 +6,8 @@ import sys
 import pytest
 
 from mms.goose import RawSocket, RawSocketError
+from tests.mms.goose.network_namespace import IN_NAMESPACE, require_network_namespace
 
-IN_NAMESPACE = ("unshare", "--user", "--map-root-user", "--net")
 EXCHANGE = """
 import subprocess
 from dataclasses import replace
@@ -29,24 +29,17 @@ print("exchanged")
 """
 
 
-@pytest.fixture
-def namespaces() -> None:
-    """Some containers may not make any; a missing iproute2 is no reason to skip."""
-    if subprocess.run([*IN_NAMESPACE, "true"], capture_output=True, check=False).returncode:
-        pytest.skip("the kernel lets nobody make a network namespace here")
-
-
-@pytest.mark.usefixtures("namespaces")
 def test_a_frame_crosses_a_pair_of_interfaces() -> None:
+    require_network_namespace()
     done = subprocess.run(
         [*IN_NAMESPACE, sys.executable, "-c", EXCHANGE], capture_output=True, text=True, check=False
     )
     assert (done.stdout, done.returncode) == ("exchanged\n", 0), done.stderr
 
 
-@pytest.mark.usefixtures("namespaces")
 def test_without_the_capability_it_says_which_is_missing() -> None:
     """In a user's namespace of its own a process has no rights over the machine's interfaces."""
+    require_network_namespace()
     told = (
         "from mms.goose import RawSocket, RawSocketError\n"
         "try:\n    RawSocket('lo')\nexcept RawSocketError as error:\n    print(error)"

@@ -11,6 +11,7 @@ import pytest
 
 from core.machines.parameters import Motor
 from service.collector.records.policy import RecordPolicy
+from service.collector.session.notes import Notes
 from service.collector.session.relay_session import RelaySession
 from service.collector.session.session_policy import SESSION_POLICY, SessionPolicy
 from service.configuration.settings import Settings
@@ -41,6 +42,7 @@ class Bench:
     """The service's side of one relay.
 
     kept_in: where sessions keep recordings, in the place of `store`.
+    notes: takes what sessions note, which is written at once where there is none.
     """
 
     relay: Relay
@@ -51,6 +53,7 @@ class Bench:
     policy: SessionPolicy = SESSION_POLICY
     reported: Motor | None = None
     kept_in: RecordingStore | None = None
+    notes: Notes | None = None
 
     def start_relay(self) -> ScriptedRelay:
         return ScriptedRelay(self.relay_root, self.relay.port)
@@ -65,6 +68,7 @@ class Bench:
             self.kept_in or self.store,
             self.settings,
             on_sample=on_sample,
+            notes=self.notes,
             reported=self.reported,
             policy=self.policy,
         )

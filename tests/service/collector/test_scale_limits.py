@@ -53,7 +53,7 @@ def test_a_run_without_triggers_or_too_short_for_a_slope_is_not_judged() -> None
 def test_the_command_ends_with_what_it_found(
     missed: int, exit_code: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    def measured(run: Seen, *_: float) -> Iterator[str]:
+    def measured(run: Seen, *_: float, **_options: bool) -> Iterator[str]:
         good = seen(missed=missed)
         run.looks, run.missed, run.memory, run.delays_s = good.looks, good.missed, good.memory, good.delays_s
         yield "measured"

@@ -16,7 +16,7 @@ from sqlalchemy.orm import Session
 from service.storage.errors import LeaseLostError
 from service.storage.models import GatewayRow, IedRow, LeaseRow
 from service.storage.records import GatewayEntry
-from service.storage.repository.relays.links import change_links
+from service.storage.repository.relays.links import change_links, locked_relays
 from service.storage.repository.sessions import Sessions
 from service.storage.states import LinkState
 
@@ -144,8 +144,10 @@ def _take(session: Session, relay: str, gateway: str) -> bool:
 
 
 def _end(session: Session, gateway: str, now_ns: int) -> None:
-    held = select(IedRow).join(LeaseRow, LeaseRow.ied == IedRow.name).where(LeaseRow.gateway == gateway)
-    known = held.where(IedRow.link_state.not_in((LinkState.UNKNOWN, LinkState.QUARANTINED)))
-    change_links(session, session.scalars(known).all(), LinkState.UNKNOWN, GATEWAY_GONE, now_ns)
+    """End a gateway's leases. Its links are locked first: a note of the gateway comes before or too late."""
+    held = select(LeaseRow.ied).where(LeaseRow.gateway == gateway)
+    relays = locked_relays(session, IedRow.name.in_(held))
+    known = [row for row in relays if row.link_state not in (LinkState.UNKNOWN, LinkState.QUARANTINED)]
+    change_links(session, known, LinkState.UNKNOWN, GATEWAY_GONE, now_ns)
     session.execute(delete(LeaseRow).where(LeaseRow.gateway == gateway))
     session.execute(delete(GatewayRow).where(GatewayRow.id == gateway))

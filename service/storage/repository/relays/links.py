@@ -3,8 +3,9 @@
 import uuid
 from collections.abc import Sequence
 from dataclasses import asdict, fields
+from operator import attrgetter
 
-from sqlalchemy import bindparam, case, delete, func, select, update
+from sqlalchemy import ColumnElement, bindparam, case, delete, func, select, update
 from sqlalchemy.orm import Session
 
 from service.storage.models import IedRow, LeaseRow, LinkChangeRow, LinkFiguresRow
@@ -40,19 +41,23 @@ _FIGURES = (
 
 
 class LinkRows(Sessions):
-    def note_links(self, notes: Sequence[LinkNote]) -> None:
+    def note_links(self, notes: Sequence[LinkNote], *, gateway: str | None = None) -> None:
         """Add to the figures of links, and set the states that notes tell, in their order.
 
-        A note of a link that stays up passes over an unknown relay. One that tells a state changes none that
-        was set since: by a quarantine, or by whoever found the gateway dead. Raises NotFoundError.
+        gateway: only while it holds a relay do its notes set that link's state. Notes may wait, and whoever
+        found the gateway dead has said since that the link is unknown. No times are compared: a clock may
+        have been set meanwhile, and those of two hosts differ.
+
+        A note of a link that stays up passes over an unknown relay. Raises NotFoundError.
         """
         if not notes:
             return
         with self._write() as session:
-            _set_states(session, [note for note in notes if note.state is not None])
-            answered = [{"of": note.ied, "at": note.now_ns} for note in notes if note.is_answer]
-            if answered:
-                session.connection().execute(_ANSWERED, answered)
+            _set_states(session, [note for note in notes if note.state is not None], gateway)
+            answered = {note.ied: note.now_ns for note in notes if note.is_answer}
+            if answered:  # in one order, for two who write them
+                rows = [{"of": relay, "at": now_ns} for relay, now_ns in sorted(answered.items())]
+                session.connection().execute(_ANSWERED, rows)
             session.connection().execute(
                 _FIGURES,
                 [
@@ -63,7 +68,7 @@ class LinkRows(Sessions):
                         "new_day_bytes": note.day_bytes,
                         **{f"more_{name}": value for name, value in asdict(note.traffic).items()},
                     }
-                    for note in notes
+                    for note in sorted(notes, key=attrgetter("ied"))
                 ],
             )
 
@@ -103,23 +108,30 @@ class LinkRows(Sessions):
             return tuple(LinkFigures(*row) for row in session.execute(query))
 
 
-def _set_states(session: Session, notes: Sequence[LinkNote]) -> None:
+def _set_states(session: Session, notes: Sequence[LinkNote], gateway: str | None) -> None:
     """Set the states that the notes tell. Hundreds of links may come up at once: a statement serves all."""
     if not notes:
         return
     relays = {note.ied for note in notes}
-    locked = select(IedRow).where(IedRow.name.in_(relays)).order_by(IedRow.name)
-    rows = {row.name: row for row in session.scalars(locked.with_for_update(key_share=True))}
+    rows = {row.name: row for row in locked_relays(session, IedRow.name.in_(relays))}
+    held = select(LeaseRow.ied).where(LeaseRow.ied.in_(relays), LeaseRow.gateway == gateway)
+    told = relays if gateway is None else set(session.scalars(held))
     with_figures = set(session.scalars(select(LinkFiguresRow.ied).where(LinkFiguresRow.ied.in_(relays))))
     zeros = {field.name: 0 for field in fields(LinkTraffic)}
     for note in notes:
         row = rows.get(note.ied) or found(session, IedRow, note.ied, "relay")
-        if note.state is not None and (row.link_changed_ns is None or row.link_changed_ns <= note.now_ns):
+        if note.state is not None and note.ied in told:
             _change_link(session, row, note.state, note.reason, note.now_ns)
         if note.ied not in with_figures:
             with_figures.add(note.ied)
             session.add(LinkFiguresRow(ied=note.ied, day=note.day, day_bytes=0, **zeros))
     _write_changes(session)
+
+
+def locked_relays(session: Session, condition: ColumnElement[bool]) -> Sequence[IedRow]:
+    """Return relays whose links nobody else changes until the transaction ends."""
+    query = select(IedRow).where(condition).order_by(IedRow.name)  # in one order, for two who lock them
+    return session.scalars(query.with_for_update(key_share=True)).all()
 
 
 def change_links(

@@ -1,7 +1,6 @@
 """Relays that are set aside, or suspected: until when, why and how often."""
 
 from collections.abc import Collection
-from datetime import UTC, datetime
 
 from sqlalchemy import select
 from sqlalchemy.orm import Session
@@ -92,8 +91,7 @@ def _put(session: Session, relay: str, reason: str, times: int, now_ns: int, pau
     row.reason, row.times, row.since_ns = reason, times, now_ns
     row.until_ns = now_ns + round(pause_s * NANOSECONDS_PER_SECOND)
     if pause_s > 0:
-        until = f"{datetime.fromtimestamp(row.until_ns // NANOSECONDS_PER_SECOND, UTC):%Y-%m-%dT%H:%M:%SZ}"
-        why = f"set aside until {until}: {reason}"
+        why = record_of(Quarantine, row).link_reason
         change_links(session, [relay_row], LinkState.QUARANTINED, why, now_ns)
     session.flush()
     return row

@@ -107,16 +107,6 @@ def test_states_of_a_link_are_noted_in_their_order(repository: Repository) -> No
     assert [change.reason for change in changes] == ["cut", None, "cut", None]
 
 
-def test_a_state_that_waited_changes_none_that_was_set_since(repository: Repository) -> None:
-    """The batch of a gateway that hung ends a second after its relays were set aside by another."""
-    set_link_state(repository, RELAY, LinkState.QUARANTINED, "it crashes us", now_ns=NOW_NS + 5 * SECOND_NS)
-    repository.note_links([state_note(4, LinkState.DOWN, "cut")])
-    ied = repository.relay(RELAY)
-    assert (ied.link_state, ied.link_reason) == (LinkState.QUARANTINED, "it crashes us")
-    repository.note_links([state_note(6, LinkState.UP)])
-    assert repository.relay(RELAY).link_state is LinkState.UP
-
-
 def test_the_latest_clock_and_place_in_the_reports_stay(repository: Repository) -> None:
     batches = BatchWriter(repository, period_s=0.05)
     for second, offset_ns in ((3, 30), (2, 20)):

@@ -254,6 +254,7 @@ def test_relays_of_a_frozen_host_are_taken_over_until_it_wakes(hall: Hall) -> No
         )
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("stray", ["NOT-A-RELAY", "a folder"])
 def test_a_stray_file_among_the_marks_of_visits_keeps_no_gateway_from_coming_again(
     hall: Hall, stray: str
@@ -278,6 +279,7 @@ def test_a_stray_file_among_the_marks_of_visits_keeps_no_gateway_from_coming_aga
         assert gateways.problem() is None
 
 
+@pytest.mark.campaign
 def test_a_gateway_that_cannot_write_what_it_measures_is_not_ready(hall: Hall) -> None:
     # On a busy machine no link may fail: then nothing would be measured, and nothing refused.
     hall.settings = hall.settings.model_copy(update={"metering_period_s": 0.2, "request_timeout_s": 20.0})

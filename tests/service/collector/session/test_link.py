@@ -1,6 +1,11 @@
 """The history and the figures of a link."""
 
+import time
+
+import pytest
+
 from service.storage.states import LinkState
+from testing.service.links import set_link_state
 from testing.waiting import eventually
 from tests.service.collector.conftest import Bench
 from tests.service.collector.scripted_relay import NAME, ScriptedRelay
@@ -24,6 +29,18 @@ def test_a_link_tells_what_went_over_it(bench: Bench, relay: ScriptedRelay) -> N
     assert figures.report_gaps == 0
     assert figures.round_trip_s is not None
     assert 0 < figures.round_trip_s < bench.settings.request_timeout_s
+
+
+def test_a_link_that_stays_up_says_so_again(
+    bench: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Another host may say late that the gateway is gone; nobody else would say otherwise."""
+    monkeypatch.setattr("service.collector.session.link.STATE_PERIOD_S", 0.2)
+    with bench.with_settings(metering_period_s=0.2).session():
+        assert eventually(lambda: bench.link() is LinkState.UP)
+        set_link_state(bench.repository, NAME, LinkState.UNKNOWN, "said late", now_ns=time.time_ns())
+        assert eventually(lambda: bench.link() is LinkState.UP)
+    assert bench.repository.link_figures(NAME).connections == 1
 
 
 def test_a_link_s_changes_are_kept_with_their_reasons(bench: Bench) -> None:

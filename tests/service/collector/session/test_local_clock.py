@@ -9,8 +9,8 @@ import pytest
 
 from core.time_stamps import rfc3339
 from ied_sim.relay.configuration import RelayConfiguration
-from service.jobs import JobRunner
 from service.jobs.limits import JobLimits
+from service.jobs.runner import JobRunner
 from service.jobs.worker import diagnose_recording
 from service.storage.records import RecordingEntry
 from service.storage.states import AlarmKind, RecordingState

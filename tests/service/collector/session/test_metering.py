@@ -1,6 +1,8 @@
 """What a relay measures all the time, sampled over real MMS."""
 
 import time
+from collections import Counter
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from threading import Thread
@@ -9,10 +11,23 @@ import pytest
 
 import scl
 from core.units import NANOSECONDS_PER_SECOND
-from mms import Client, DataAccessError, FunctionalConstraint, ProtocolError, Server, Value
+from mms import (
+    AccessDenied,
+    Client,
+    ConnectionLost,
+    DataAccessError,
+    FunctionalConstraint,
+    MmsError,
+    NotFound,
+    ProtocolError,
+    RequestRejected,
+    Server,
+    ServiceFailed,
+    Value,
+)
 from scl.model_text import model_text
 from service.collector.session.browsing import browse
-from service.collector.session.metering import Metering
+from service.collector.session.metering import MOST_TOGETHER, Metering
 from service.collector.session.relay_session import RelaySession
 from service.plant import Measurand, MeteredQuantity, Relay
 from service.plant.metering import measurands_from_offer, measurands_from_scl
@@ -129,8 +144,83 @@ def test_a_malformed_answer_ends_the_visit(
     metering = Metering(metered, MOTOR, period_s=60, on_sample=samples.append)
     with Client.connect("127.0.0.1", metered.port) as client:
         monkeypatch.setattr(Client, "read", malformed)
+        monkeypatch.setattr(Client, "read_together", malformed)
         with pytest.raises(ProtocolError, match="malformed"):
             metering.sample(client)
+
+
+def requests_counted(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
+    """How often each service of a client is asked for from now on."""
+    asked: Counter[str] = Counter()
+    for name in ("read", "read_together"):
+        right = getattr(Client, name)
+
+        def counting(
+            client: Client, *given: object, name: str = name, right: Callable[..., object] = right
+        ) -> object:
+            asked[name] += 1
+            return right(client, *given)
+
+        monkeypatch.setattr(Client, name, counting)
+    return asked
+
+
+def test_all_values_of_a_device_come_with_one_request(
+    bench: Bench, metered: Relay, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    samples: list[Sample] = []
+    metering = Metering(metered, MOTOR, period_s=60, on_sample=samples.append)
+    with Client.connect("127.0.0.1", metered.port) as client:
+        metering.sample(client)  # it also reads powers of ten
+        asked = requests_counted(monkeypatch)
+        metering.sample(client)
+    assert 1 < len(metered.measurands) <= MOST_TOGETHER
+    assert asked == {"read_together": 1}
+    assert dict(samples[0].values) == dict(samples[1].values)
+
+
+@pytest.mark.parametrize("refusal", [ServiceFailed, RequestRejected, AccessDenied, NotFound])
+def test_a_relay_that_refuses_many_values_at_once_gives_them_one_by_one(
+    bench: Bench, metered: Relay, monkeypatch: pytest.MonkeyPatch, refusal: type[MmsError]
+) -> None:
+    def refuse(client: Client, *_: object) -> Value:
+        asked["refused"] += 1
+        raise refusal(client.host, "read 12 values", 1, "no lists")
+
+    samples: list[Sample] = []
+    metering = Metering(metered, MOTOR, period_s=60, on_sample=samples.append)
+    asked = requests_counted(monkeypatch)
+    monkeypatch.setattr(Client, "read_together", refuse)
+    with Client.connect("127.0.0.1", metered.port) as client:
+        metering.sample(client)
+        metering.begin()
+        metering.sample(client)
+    assert asked["refused"] == 1
+    assert [sample.values["ia_A"] for sample in samples] == [pytest.approx(CURRENT_A)] * 2
+
+
+@pytest.mark.parametrize("has_worked", [False, True])
+def test_a_relay_whose_link_ends_at_its_first_request_of_many_values_is_asked_so_once(
+    bench: Bench, metered: Relay, monkeypatch: pytest.MonkeyPatch, has_worked: bool
+) -> None:
+    def lose(client: Client, *_: object) -> Value:
+        raise ConnectionLost(client.host, "read 12 values", 2, "the link is gone")
+
+    samples: list[Sample] = []
+    metering = Metering(metered, MOTOR, period_s=60, on_sample=samples.append)
+    with Client.connect("127.0.0.1", metered.port) as client:
+        if has_worked:
+            metering.sample(client)
+        with monkeypatch.context() as lost:
+            lost.setattr(Client, "read_together", lose)
+            with pytest.raises(ConnectionLost):
+                metering.sample(client)
+    asked = requests_counted(monkeypatch)
+    with Client.connect("127.0.0.1", metered.port) as client:
+        metering.begin()
+        metering.sample(client)
+    assert ("read_together" in asked) == has_worked
+    assert samples[-1].values["ia_A"] == pytest.approx(CURRENT_A)
 
 
 def test_a_relay_that_measures_nothing_is_not_asked_again(bench: Bench, metered: Relay) -> None:

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+from service.collector.gateway.batch_writer import BatchWriter
 from service.collector.session.protocol_fault_counter import ProtocolFaultCounter
 from service.collector.session.quarantine import QuarantinePolicy
 from service.collector.session.session_policy import SESSION_POLICY, SessionPolicy
@@ -27,7 +28,8 @@ def test_a_relay_that_breaks_the_protocol_again_and_again_is_set_aside(repositor
     counter = ProtocolFaultCounter(A, repository, POLICY)
     counter.recall()
     told = [counter.count_fault("nonsense") for _ in range(SESSION_POLICY.faults_in_a_row)]
-    assert told == [False] * (SESSION_POLICY.faults_in_a_row - 1) + [True]
+    assert told[:-1] == [None] * (SESSION_POLICY.faults_in_a_row - 1)
+    assert told[-1] == repository.quarantine(A)
     assert "broke the protocol 5 times in a row, at last: nonsense" in (repository.relay(A).link_reason or "")
 
 
@@ -40,6 +42,26 @@ def test_a_relay_that_answers_with_nonsense_is_set_aside_with_its_reason(bench: 
     reason = bench.repository.relay(NAME).link_reason or ""
     assert f"broke the protocol {SESSION_POLICY.faults_in_a_row} times in a row" in reason
     assert "connect: malformed message" in reason
+    states = [change.state for change in bench.repository.link_changes(NAME, limit=100).items]
+    assert states == [LinkState.QUARANTINED, LinkState.DOWN], "each once, latest first"
+
+
+def test_notes_that_wait_take_no_link_out_of_quarantine(bench: Bench) -> None:
+    """A gateway writes what its sessions note up to a second later, after a locked database much later."""
+    batches = bench.notes = BatchWriter(bench.repository, period_s=0.05)
+    bench.policy = SessionPolicy(reconnect=Backoff(first_s=0.01, longest_s=10.0))
+    with lying(overheard(), {LIST_OF_NAMES: lambda _: b"\xa1\x00"}) as port:
+        bench.relay = replace(bench.relay, port=port)
+        with bench.session():
+            assert eventually(lambda: bench.repository.quarantine(NAME) is not None)
+    quarantine = bench.repository.quarantine(NAME)
+    batches.start()
+    batches.stop(10)
+    link = bench.repository.relay(NAME)
+    assert quarantine is not None
+    assert (link.link_state, link.link_reason) == (LinkState.QUARANTINED, quarantine.link_reason)
+    states = [change.state for change in bench.repository.link_changes(NAME, limit=100).items]
+    assert LinkState.DOWN in states, "the notes that waited are written"
 
 
 def test_good_visits_between_count(repository: Repository) -> None:

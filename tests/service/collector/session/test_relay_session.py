@@ -10,7 +10,7 @@ from structlog.testing import capture_logs
 
 from core.units import NANOSECONDS_PER_SECOND
 from mms import Client, DataAccessError
-from service.collector.session.relay_session import RelaySession
+from service.collector.session.link import Link
 from service.collector.session.session_policy import SessionPolicy
 from service.recording_store.arriving import Incoming
 from service.storage.records import ReportPosition
@@ -376,13 +376,13 @@ def test_a_relay_that_forgot_the_last_report_is_subscribed_anew(bench: Bench, re
 def test_a_relay_that_stays_down_is_logged_once(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
     bench.policy = SessionPolicy(reconnect=SOON)
     failures: list[str] = []
-    note_failure = RelaySession._note_failure
+    failed = Link.failed
 
-    def counted(session: RelaySession, trouble: str, reason: str) -> None:
+    def counted(link: Link, reason: str) -> None:
         failures.append(reason)
-        note_failure(session, trouble, reason)
+        failed(link, reason)
 
-    monkeypatch.setattr(RelaySession, "_note_failure", counted)
+    monkeypatch.setattr(Link, "failed", counted)
     with capture_logs() as logs, bench.session():
         assert eventually(lambda: len(failures) >= 3)
     assert [entry["event"] for entry in logs].count("link down") == len(set(failures)) == 1

@@ -4,6 +4,7 @@ import pytest
 
 from service.storage import NotFoundError, Repository
 from service.storage.records import LinkNote, LinkTraffic
+from service.storage.repository.relays.leases import GATEWAY_GONE
 from service.storage.states import LinkState
 from testing.service.plants import NOW_NS, SECOND_NS
 
@@ -40,6 +41,32 @@ def test_many_links_change_at_once_each_in_its_order(repository: Repository) -> 
     assert reasons(repository, FIRST) == ["refused", None]
     assert reasons(repository, SECOND) == ["cut"], "what stays as it was is no change"
     assert [repository.link_figures(name).connections for name in (FIRST, SECOND)] == [2, 2]
+
+
+def test_a_state_that_waited_changes_none_once_its_gateway_was_found_dead(repository: Repository) -> None:
+    for gateway in ("hung", "next"):
+        repository.register_gateway(gateway, host="h", process_id=1, now_ns=NOW_NS)
+    assert repository.share_relays("hung", [FIRST], most=10, problem=None).held == {FIRST}
+    repository.note_links([note(FIRST, 1, LinkState.UP)], gateway="hung")
+    assert repository.end_gateway("hung", now_ns=NOW_NS + 5 * SECOND_NS)
+    repository.note_links([note(FIRST, 6, LinkState.DOWN, "cut")], gateway="hung")
+    assert repository.relay(FIRST).link_reason == GATEWAY_GONE
+    assert repository.link_figures(FIRST).connections == 2, "what went over the link counts"
+    assert repository.share_relays("next", [FIRST], most=10, problem=None).held == {FIRST}
+    repository.note_links([note(FIRST, 7, LinkState.UP)], gateway="next")
+    repository.note_links([note(FIRST, 8, LinkState.DOWN, "cut")], gateway="hung")
+    assert repository.relay(FIRST).link_state is LinkState.UP
+
+
+def test_a_clock_that_was_ahead_keeps_no_link_unknown(repository: Repository) -> None:
+    """The gateway before ended while the clock was an hour ahead."""
+    for gateway in ("before", "after"):
+        repository.register_gateway(gateway, host="h", process_id=1, now_ns=NOW_NS)
+        repository.share_relays(gateway, [FIRST], most=10, problem=None)
+        repository.note_links([note(FIRST, 1, LinkState.UP)], gateway=gateway)
+        assert repository.relay(FIRST).link_state is LinkState.UP
+        repository.end_gateway(gateway, now_ns=NOW_NS + 3600 * SECOND_NS)
+        assert repository.relay(FIRST).link_state is LinkState.UNKNOWN
 
 
 def test_an_unknown_relay_is_told_where_a_note_has_a_state_and_nothing_is_kept(
