@@ -85,7 +85,7 @@ class ApiContext:
             self.repository.motor(name)
 
 
-def _context_of(request: Request) -> ApiContext:
+async def _context_of(request: Request) -> ApiContext:  # async: a plain function would take a thread
     context = request.app.state.context
     if not isinstance(context, ApiContext):
         raise TypeError("the application was not made by create_app")

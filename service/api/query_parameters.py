@@ -1,8 +1,11 @@
 """Query parameters that a route does not have are refused: a misspelt one would silently select nothing."""
 
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Callable, Mapping
 from http import HTTPStatus
+from itertools import islice
 from typing import get_args, get_origin
+from weakref import WeakKeyDictionary
 
 from fastapi import Request, params
 from fastapi.dependencies.utils import get_flat_params
@@ -13,8 +16,11 @@ from service.api.problems import MAX_ERRORS, FieldError, ProblemError, location
 
 LONGEST_QUOTED = 100
 
+_PARAMETERS: WeakKeyDictionary[Callable[..., object], Mapping[str, bool]] = WeakKeyDictionary()
+"""Of the functions of routes, which are read once: see `_known`."""
 
-def refuse_unknown_parameters(request: Request) -> None:
+
+async def refuse_unknown_parameters(request: Request) -> None:
     """Raise ProblemError (422) for a query parameter that the route does not have, or that is given twice.
 
     One that takes a list may be given several times.
@@ -22,13 +28,13 @@ def refuse_unknown_parameters(request: Request) -> None:
     if not request.query_params:
         return
     known = _known(request)
-    given = request.query_params.multi_items()
-    names = [name for name, _ in given]
-    errors = [
+    given_times = Counter(name for name, _ in request.query_params.multi_items())
+    faulty = (
         FieldError(location=location(("query", name)), message=_fault(name, known))
-        for name in dict.fromkeys(names)
-        if name not in known or (names.count(name) > 1 and not known[name])
-    ][:MAX_ERRORS]
+        for name, times in given_times.items()
+        if name not in known or (times > 1 and not known[name])
+    )
+    errors = list(islice(faulty, MAX_ERRORS))
     if errors:
         detail = "; ".join(f"{error.location}: {error.message}" for error in errors[:3])
         raise ProblemError(HTTPStatus.UNPROCESSABLE_ENTITY, detail[:1000], errors=errors)
@@ -39,12 +45,14 @@ def _known(request: Request) -> Mapping[str, bool]:
     route = request.scope["route"]
     if not isinstance(route, APIRoute):
         return {}
-    fields = get_flat_params(route.dependant)
-    return {
-        field.alias: _is_list(field.field_info.annotation)
-        for field in fields
-        if isinstance(field.field_info, params.Query)
-    }
+    known = _PARAMETERS.get(route.endpoint)
+    if known is None:
+        known = _PARAMETERS[route.endpoint] = {
+            field.alias: _is_list(field.field_info.annotation)
+            for field in get_flat_params(route.dependant)
+            if isinstance(field.field_info, params.Query)
+        }
+    return known
 
 
 def _is_list(annotation: object) -> bool:

@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 from service.condition.work import ConditionWork
 from service.configuration.settings import Settings
-from service.jobs import JobRunner
 from service.jobs.limits import JobLimits
+from service.jobs.runner import JobRunner
 from service.jobs.worker import diagnose_recording, prepare_worker
 from service.plant import Plant
 from service.process.installation import installation_id

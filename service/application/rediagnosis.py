@@ -14,9 +14,9 @@ from itertools import islice
 from core.machines.parameters import Motor
 from service.condition.motor_data import document_of
 from service.configuration.settings import Settings
-from service.jobs import JobRunner
 from service.jobs.dask_workers import DaskWorkers, diagnose_shared_recording
 from service.jobs.limits import JobLimits
+from service.jobs.runner import JobRunner
 from service.plant import Plant
 from service.process.installation import installation_id
 from service.process.single_instance import exclusive

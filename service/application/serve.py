@@ -27,7 +27,7 @@ from service.configuration.problems import Problems
 from service.configuration.relay_access import clear_passwords
 from service.configuration.settings import Settings, SettingsError
 from service.gateways.supervision import PlantGateways, missing_library
-from service.jobs import JobRunner
+from service.jobs.runner import JobRunner
 from service.notifications.checking import channel_problems, report_problems, route_problems, warnings
 from service.notifications.work import NotificationWork
 from service.plant import Plant, read_plant

@@ -17,8 +17,8 @@ from threading import Thread
 import structlog
 from pebble import ProcessPool
 
+from service.jobs.worker_process import prepare
 from service.jobs.workers import Argument, NoWorkersError, Result
-from service.process.capabilities import Capability, give_up
 from service.process.termination import held_back
 from service.timing.backoff import RestartDelay
 
@@ -102,7 +102,7 @@ class WorkerPool:
             self._unprepared = self._workers
             pool = ProcessPool(
                 max_workers=self._workers,
-                initializer=_prepare,
+                initializer=prepare,
                 initargs=(self._prepare_worker, self._prepared),
                 context=self._context,
             )
@@ -144,11 +144,3 @@ def _end(pool: ProcessPool) -> None:
     """End all workers of a pool, and wait for that."""
     pool.stop()  # type: ignore[no-untyped-call]  # pebble annotates the rest of its pool
     pool.join(timeout=STOP_TIMEOUT_S)
-
-
-def _prepare(prepare_worker: Callable[[], None], prepared: Semaphore) -> None:
-    """Prepare a worker, in that worker; tell the pool when it is done."""
-    # It reads what relays send, and needs no socket.
-    give_up([Capability.NET_RAW])
-    prepare_worker()
-    prepared.release()

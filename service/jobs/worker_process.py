@@ -1,12 +1,26 @@
-"""Tie a worker process to the service it belongs to."""
+"""Prepare a worker process, and tie it to the service it belongs to.
+
+A worker imports this first: it has to be small.
+"""
 
 import multiprocessing
 import os
 import signal
 import threading
+from collections.abc import Callable
 from multiprocessing.connection import wait
+from multiprocessing.synchronize import Semaphore
 
+from service.process.capabilities import Capability, give_up
 from service.process.termination import leave_to_parent
+
+
+def prepare(prepare_worker: Callable[[], None], prepared: Semaphore) -> None:
+    """Prepare a worker, in that worker; tell the pool when it is done."""
+    # It reads what relays send, and needs no socket.
+    give_up([Capability.NET_RAW])
+    prepare_worker()
+    prepared.release()
 
 
 def follow_service() -> None:

@@ -72,7 +72,7 @@ class View:
         return {"view": self, "may": self.may, "Permission": Permission, "now_ns": self.now_ns}
 
 
-def _view_of(request: Request, context: Context, asking: Asking) -> View:
+async def _view_of(request: Request, context: Context, asking: Asking) -> View:
     return View(request, context, asking, time.time_ns())
 
 

@@ -4,7 +4,7 @@ import time
 from functools import partial
 from typing import Annotated, Literal
 
-from fastapi import APIRouter, Query
+from fastapi import APIRouter, Query, Response
 from fastapi.responses import StreamingResponse
 
 from core.machines.parameters import ParametersSource
@@ -17,6 +17,7 @@ from service.api.document import Name
 from service.api.exports.answers import FILES, ListAnswer
 from service.api.motors.commissioning import offer
 from service.api.motors.schemas import Health, ListedMotor, Motor, RecordedStarts, Site, TrendPoint
+from service.api.motors.trend_page import ConditionQuantity, trend_of_conditions, trend_of_recordings
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
 from service.api.recordings.listed import listed
@@ -25,9 +26,7 @@ from service.api.times import From, To, rfc3339
 from service.condition.staleness import stale_after_ns
 from service.configuration.settings import Settings
 from service.exports import recordings, trends
-from service.storage.records import ConditionPoint, MotorHealth, Quantity
-
-ConditionQuantity = Literal["condition_level", "change"]
+from service.storage.records import MotorHealth, Quantity
 
 router = APIRouter()
 
@@ -83,7 +82,6 @@ def get_health(context: Context, name: Name) -> Health:
     response_model=Page[TrendPoint],
     responses=problems(404) | FILES,
     tags=["condition"],
-    response_model_exclude_unset=True,
     dependencies=[require(Permission.VIEW)],
 )
 def get_trend(
@@ -95,7 +93,7 @@ def get_trend(
     to: To = None,
     limit: Limit = DEFAULT_LIMIT,
     cursor: CursorText = None,
-) -> Page[TrendPoint] | StreamingResponse:
+) -> Response:
     """Return one figure for each recording of a motor, oldest first.
 
     The figures of the motor's condition, as it was seen from that recording on, are `condition_level` and
@@ -108,9 +106,9 @@ def get_trend(
     after = decode(cursor, int, str)
     if quantity == "condition_level" or quantity == "change":
         seen = context.repository.condition_trend(name, from_ns=from_, to_ns=to, limit=limit, after=after)
-        return page(seen, partial(_point_of_condition, quantity=quantity))
+        return trend_of_conditions(seen, quantity)
     points = context.repository.trend(name, quantity, from_ns=from_, to_ns=to, limit=limit, after=after)
-    return page(points, TrendPoint.model_validate)
+    return trend_of_recordings(points)
 
 
 @router.get(
@@ -137,22 +135,6 @@ def list_recordings_of_motor(
         motor=name, operation=operation, limit=limit, after=decode(cursor, int, str)
     )
     return listed(context, found)
-
-
-def _point_of_condition(point: ConditionPoint, quantity: ConditionQuantity) -> TrendPoint:
-    is_change = quantity == "change"
-    return TrendPoint(
-        time=rfc3339(point.time_ns),
-        value=point.change if is_change else point.mu_f,
-        ci95=point.change_ci95 if is_change else point.mu_f_ci95,
-        scatter95=None,
-        detection_limit=None,
-        verdict=None,
-        recording_id=point.recording_id,
-        state=point.state,
-        kind=point.kind,
-        phase=point.phase,
-    )
 
 
 def _starts(health: MotorHealth) -> RecordedStarts | None:

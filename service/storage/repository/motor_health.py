@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from typing import Any, TypeVar
 
-from sqlalchemy import ColumnElement, Select, and_, func, null, select, union_all
+from sqlalchemy import BindParameter, ColumnElement, Select, and_, bindparam, func, null, select, union_all
 from sqlalchemy.orm import Session, aliased
 
 from core.diagnosis.verdict import Verdict
@@ -96,9 +96,11 @@ class MotorHealthRows(Sessions):
         from_ns: int | None = None,
         to_ns: int | None = None,
         after: Cursor | None = None,
+        descending: bool = False,
     ) -> Page[TrendPoint]:
         """Return a figure of each recording, oldest first, from_ns <= time < to_ns. Raises NotFoundError.
 
+        descending: newest first instead.
         Recordings of a motor that stands, starts, stops or trips are not among them.
         """
         columns = (
@@ -107,7 +109,16 @@ class MotorHealthRows(Sessions):
             DiagnosisRow.verdict,
             DiagnosisRow.recording_id,
         )
-        return self._points(motor, columns, _point, from_ns=from_ns, to_ns=to_ns, limit=limit, after=after)
+        return self._points(
+            motor,
+            columns,
+            _point,
+            from_ns=from_ns,
+            to_ns=to_ns,
+            limit=limit,
+            after=after,
+            descending=descending,
+        )
 
     def diagnosis_trend(
         self,
@@ -141,6 +152,7 @@ class MotorHealthRows(Sessions):
         from_ns: int | None,
         to_ns: int | None,
         after: Cursor | None,
+        descending: bool = False,
     ) -> Page[Point]:
         # All of these columns are in the index: no row with its document is read.
         query = select(*columns).where(
@@ -150,7 +162,7 @@ class MotorHealthRows(Sessions):
         order: Order = [DiagnosisRow.recorded_ns, DiagnosisRow.id]
         with self._read() as session:
             found(session, MotorRow, motor, "motor")
-            return page_of(session, query, order, to_point, limit=limit, after=after)
+            return page_of(session, query, order, to_point, limit=limit, after=after, descending=descending)
 
 
 def _health_of(session: Session, motors: Sequence[MotorEntry]) -> tuple[MotorHealth, ...]:
@@ -158,21 +170,13 @@ def _health_of(session: Session, motors: Sequence[MotorEntry]) -> tuple[MotorHea
 
     An index finds each motor's latest rows.
     """
-    names = [motor.name for motor in motors]
-    diagnosis = aliased(DiagnosisRow)
-    latest_diagnosis = (
-        select(diagnosis.id)
-        .where(diagnosis.motor == MotorRow.name, diagnosis.current, diagnosis.says_nothing.is_(False))
-        .order_by(diagnosis.recorded_ns.desc(), diagnosis.id.desc())
-        .limit(1)
-    )
-    said = select(*_SAID).where(DiagnosisRow.id.in_(_for_each(names, latest_diagnosis)))
-    diagnoses = {row.motor: LatestDiagnosis(*row) for row in session.execute(said)}
-    recordings = _latest_recordings(session, names)
-    starts = _starts(session, names)
-    conditions = conditions_of(session, names)
-    links = select(*columns_of(IedEntry, IedRow)).where(IedRow.name.in_({motor.ied for motor in motors}))
-    relays = {row.name: IedEntry(*row) for row in session.execute(links)}
+    named = {"of_motors": [motor.name for motor in motors]}
+    diagnoses = {row.motor: LatestDiagnosis(*row) for row in session.execute(_LATEST_DIAGNOSES, named)}
+    recordings = {row.motor: RecordingEntry(*row) for row in session.execute(_LATEST_RECORDINGS, named)}
+    starts = {row.motor: RecordedStarts(*row[1:]) for row in session.execute(_USABLE_STARTS, named)}
+    conditions = conditions_of(session, named["of_motors"])
+    links = session.execute(_RELAYS, {"of_relays": list({motor.ied for motor in motors})})
+    relays = {row.name: IedEntry(*row) for row in links}
     return tuple(
         MotorHealth(
             motor=motor,
@@ -186,7 +190,34 @@ def _health_of(session: Session, motors: Sequence[MotorEntry]) -> tuple[MotorHea
     )
 
 
-def _latest_recordings(session: Session, motors: Sequence[str]) -> dict[str, RecordingEntry]:
+def is_usable_start() -> ColumnElement[bool]:
+    """Return the condition that the parameters of a motor can be estimated from a recording."""
+    return and_(RecordingRow.operation == Operation.START, RecordingRow.operation_remark.is_(None))
+
+
+_OF_MOTORS: BindParameter[str] = bindparam("of_motors", expanding=True)
+
+
+def _for_each_motor(latest: Select[str]) -> Select[str]:
+    """Return one id for each of the motors: what `latest` finds for it."""
+    return select(latest.scalar_subquery()).select_from(MotorRow).where(MotorRow.name.in_(_OF_MOTORS))
+
+
+def _latest_diagnoses() -> Select[Any]:
+    diagnosis = aliased(DiagnosisRow)
+    latest = (
+        select(diagnosis.id)
+        .where(diagnosis.motor == MotorRow.name, diagnosis.current, diagnosis.says_nothing.is_(False))
+        .order_by(diagnosis.recorded_ns.desc(), diagnosis.id.desc())
+        .limit(1)
+    )
+    return select(*_SAID).where(DiagnosisRow.id.in_(_for_each_motor(latest)))
+
+
+_RECORDED_NS = func.coalesce(RecordingRow.recorded_ns, RecordingRow.announced_ns)
+
+
+def _latest_recordings() -> Select[Any]:
     """Return each motor's latest recording: by its own time, or when it was first seen while that is unknown.
 
     A record of last year that is uploaded today is not the latest. Each of the two has an index.
@@ -205,34 +236,23 @@ def _latest_recordings(session: Session, motors: Sequence[str]) -> dict[str, Rec
         .order_by(recording.announced_ns.desc(), recording.id.desc())
         .limit(1)
     )
-    time_ns = func.coalesce(RecordingRow.recorded_ns, RecordingRow.announced_ns)
-    latest = (
+    latest = union_all(*(_for_each_motor(one) for one in (timed, untimed)))
+    return (
         select(*columns_of(RecordingEntry, RecordingRow))
-        .where(RecordingRow.id.in_(union_all(*(_for_each(motors, one) for one in (timed, untimed)))))
-        .order_by(time_ns, RecordingRow.id)
+        .where(RecordingRow.id.in_(latest))
+        .order_by(_RECORDED_NS, RecordingRow.id)
     )
-    return {row.motor: RecordingEntry(*row) for row in session.execute(latest)}
 
 
-def _starts(session: Session, motors: Sequence[str]) -> dict[str, RecordedStarts]:
-    """Return the starts of each motor from which its parameters can be estimated."""
-    time_ns = func.coalesce(RecordingRow.recorded_ns, RecordingRow.announced_ns)
-    usable = (
-        select(RecordingRow.motor, func.count(), func.max(time_ns))
-        .where(RecordingRow.motor.in_(motors), is_usable_start())
-        .group_by(RecordingRow.motor)
-    )
-    return {motor: RecordedStarts(number, latest) for motor, number, latest in session.execute(usable)}
-
-
-def is_usable_start() -> ColumnElement[bool]:
-    """Return the condition that the parameters of a motor can be estimated from a recording."""
-    return and_(RecordingRow.operation == Operation.START, RecordingRow.operation_remark.is_(None))
-
-
-def _for_each(motors: Sequence[str], latest: Select[str]) -> Select[str]:
-    """Return one id for each of the motors: what `latest` finds for it."""
-    return select(latest.scalar_subquery()).select_from(MotorRow).where(MotorRow.name.in_(motors))
+# Built once: that takes a sixth of the time of an answer of a hundred motors.
+_LATEST_DIAGNOSES = _latest_diagnoses()
+_LATEST_RECORDINGS = _latest_recordings()
+_USABLE_STARTS = (
+    select(RecordingRow.motor, func.count(), func.max(_RECORDED_NS))
+    .where(RecordingRow.motor.in_(_OF_MOTORS), is_usable_start())
+    .group_by(RecordingRow.motor)
+)
+_RELAYS = select(*columns_of(IedEntry, IedRow)).where(IedRow.name.in_(bindparam("of_relays", expanding=True)))
 
 
 def _point(

@@ -3,7 +3,7 @@
 from collections.abc import Collection, Mapping
 from dataclasses import fields
 
-from sqlalchemy import or_, select, update
+from sqlalchemy import bindparam, or_, select, update
 from sqlalchemy.orm import Session
 
 from core.condition.kinds import Kind, State
@@ -42,16 +42,21 @@ class ConditionRows(Sessions):
             )
 
 
+_CONDITIONS = select(*columns_of(ConditionEntry, ConditionRow)).order_by(ConditionRow.motor)
+_CONDITIONS_IN_SERVICE = _CONDITIONS.join(MotorRow, MotorRow.name == ConditionRow.motor).where(
+    MotorRow.in_service
+)
+_CONDITIONS_OF_MOTORS = _CONDITIONS.where(ConditionRow.motor.in_(bindparam("of_motors", expanding=True)))
+_NAMES = tuple(field.name for field in fields(ConditionEntry))
+
+
 def conditions_of(session: Session, motors: Collection[str] | None = None) -> Mapping[str, ConditionEntry]:
     """Return the conditions of these motors, or of all in service, by name."""
-    query = select(*columns_of(ConditionEntry, ConditionRow))
     if motors is None:
-        query = query.join(MotorRow, MotorRow.name == ConditionRow.motor).where(MotorRow.in_service)
+        rows = session.execute(_CONDITIONS_IN_SERVICE)
     else:
-        query = query.where(ConditionRow.motor.in_(motors))
-    names = [field.name for field in fields(ConditionEntry)]
-    rows = session.execute(query.order_by(ConditionRow.motor))
-    return {row.motor: ConditionEntry(**dict(zip(names, row, strict=True))) for row in rows}
+        rows = session.execute(_CONDITIONS_OF_MOTORS, {"of_motors": list(motors)})
+    return {row.motor: ConditionEntry(**dict(zip(_NAMES, row, strict=True))) for row in rows}
 
 
 def note_standstill(session: Session, motor: str, time_ns: int) -> None:
