@@ -1,9 +1,13 @@
-"""A service on a PostgreSQL server, and hosts beside it that can be killed, frozen and cut off from it."""
+"""A service on a PostgreSQL server, and hosts beside it that can be killed, frozen and cut off from it.
+
+A host is one of gateways, one of workers, or a whole service like the first one.
+"""
 
 import os
 import signal
 import subprocess
 import sys
+import tempfile
 from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
@@ -33,6 +37,7 @@ Thing = TypeVar("Thing", bound=Hashable)
 
 DATABASE = "mcc"
 NAMES = ("first", "second")
+SERVE = "serve"
 END_LIMIT_S = 20.0
 RENEWAL_LIMIT_S = 60.0
 
@@ -52,7 +57,7 @@ class Fault(StrEnum):
 
 @dataclass
 class Host:
-    """The processes of `mcc collect` or `mcc work`, which reach the database by a link of their own."""
+    """The processes of a command of `mcc`, which reach the database by a link of their own."""
 
     name: str
     command: str
@@ -152,8 +157,7 @@ class Site:
 
     @contextmanager
     def _host(self, name: str, command: str) -> Iterator[Host]:
-        folder = self.service.directory / f"{command}-{name}"
-        folder.mkdir()
+        folder = Path(tempfile.mkdtemp(prefix=f"{command}-{name}-", dir=self.service.directory))
         seen = self.proxy.links[name].seen
         settings = {
             "MCC_SCD": str(self.plant.scd),
@@ -162,6 +166,8 @@ class Site:
             "MCC_LEASE_S": f"{self.lease_s:g}",
             "MCC_WORKERS": "1",
         }
+        if command == SERVE:
+            settings["MCC_PORT"] = str(free_ports(1)[0])
         host = Host(name, command, service_environment(folder / "data", settings), folder / "log", self.proxy)
         host.start()
         try:

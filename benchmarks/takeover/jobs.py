@@ -30,13 +30,14 @@ AT_ONCE = 6
 """Records that are queued together: enough that each runner has one."""
 
 
-def take_over_times(site: Site, repeats: int) -> Iterator[tuple[Fault, float]]:
+def take_over_times(site: Site, repeats: int, command: str) -> Iterator[tuple[Fault, float]]:
     """Yield each fault with the time until the record of the lost host's job was diagnosed [s].
 
+    command: of `mcc`, what the hosts run.
     Raises AssertionError where a record is lost or diagnosed twice.
     """
     records = Records(site)
-    with site.hosts("work") as hosts:
+    with site.hosts(command) as hosts:
         for fault in Fault:
             for number in range(repeats):
                 yield fault, _take_over(site, records, hosts, hosts[number % len(hosts)], fault)

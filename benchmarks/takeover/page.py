@@ -11,8 +11,9 @@ PREAMBLE = """\
 
 How long until other hosts do the work of one that is lost, with what [several
 hosts](../how-to/several-hosts.md) describes: one PostgreSQL server, one folder, a service, and beside it
-two hosts of gateways (`mcc collect`), then two of workers (`mcc work`). All are real processes on one
-machine with two cores, which others used too; the relays are six simulated ones.
+two hosts of gateways (`mcc collect`), then two of workers (`mcc work`); in the sections of services two more
+services (`mcc serve`) in their place. All are real processes on one machine with two cores, which others
+used too; the relays are six simulated ones.
 
 - **Killed**: all processes of the host end by SIGKILL. It is started again after the take-over.
 - **Frozen**: all of them stop by SIGSTOP, and go on after the take-over.
@@ -45,7 +46,12 @@ def of_lease(lease_s: float) -> str:
     return f"lease-{lease_s:g}"
 
 
-ORDER = (of_lease(30.0), of_lease(10.0), WAKE_UP)
+def of_services(lease_s: float) -> str:
+    """Return the subject of the times of services with a lease."""
+    return f"services-{lease_s:g}"
+
+
+ORDER = (of_lease(30.0), of_lease(10.0), of_services(30.0), of_services(10.0), WAKE_UP)
 """The sections of the page, in their order."""
 
 

@@ -22,12 +22,13 @@ HOLD_S = 0.05
 """How long the control that triggers a relay is held."""
 
 
-def take_over_times(site: Site, plant: Plant, repeats: int) -> Iterator[tuple[Fault, float]]:
+def take_over_times(site: Site, plant: Plant, repeats: int, command: str) -> Iterator[tuple[Fault, float]]:
     """Yield each fault with the time until a record of the lost host's relays was stored [s].
 
+    command: of `mcc`, what the hosts run.
     Raises AssertionError where a record is lost or comes twice.
     """
-    with site.hosts("collect") as hosts:
+    with site.hosts(command) as hosts:
         made: set[tuple[str, str]] = set()
         _wait_for_shares(site, hosts)
         for fault in Fault:
