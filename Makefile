@@ -1,4 +1,4 @@
-# make install | demo | test | test-all | coverage | lint | bench | fuzz SECONDS=60 | interop [LIBIEC61850=TREE]    (PYTHON=python3.11 make install: another interpreter)
+# make install | demo | test | campaigns | test-all | coverage | lint | bench | fuzz SECONDS=60 | interop [LIBIEC61850=TREE]    (PYTHON=python3.11 make install: another interpreter)
 # make chaos SEED=1 MINUTES=2 RECORDINGS=300 RELAYS=12 [FAULTS=1] [DATABASE=postgresql] [JSON=FILE] [DATA=DIR]     (faults of all kinds: docs/evidence/track-record.md)
 # make bench [QUICK=1] [DATA=FOLDER]     (DATA: measured recordings, for docs/evidence/condition.md)
 # make corpus DIR=FOLDER     (how recordings and SCL files of a folder are read: docs/evidence/corpus.md)
@@ -18,7 +18,7 @@ MADE_PAGES := $(foreach page,architecture command alarm audit role,tests/docs/te
 # docker compose where its engine answers, else nothing; COMPOSE="podman-compose" make compose-test: another one
 COMPOSE ?= $(shell docker compose version >/dev/null 2>&1 && docker info >/dev/null 2>&1 && echo docker compose)
 
-.PHONY: install demo test test-all coverage hostile chaos compose-test compose-test-hosts lint docs client bench corpus interop fuzz lock clean
+.PHONY: install demo test campaigns test-all containers coverage hostile chaos compose-test compose-test-hosts lint docs client bench corpus interop fuzz lock clean
 .DEFAULT_GOAL := install
 
 install: $(WARM)
@@ -43,15 +43,22 @@ demo: install
 
 # What a change can break, within minutes.
 test: install
-	$(BIN)/python -m pytest -q -m "not campaign"
-
-# The same and the campaigns; the containers where an engine answers. Long tests that have limits of time do not share the
-# cores with as many others.
-test-all: install
 	.ci/pytest -q -m "not campaign"
+
+# Long tests that have limits of time do not share the cores with as many others.
+campaigns: install
 	.ci/pytest -q -m campaign -n 2
+
+# All of them.
+test-all: install
+	$(MAKE) test
+	$(MAKE) campaigns
 	$(MAKE) hostile
 	$(MAKE) chaos
+	$(MAKE) containers
+
+# compose-test where an engine answers.
+containers: install
 	$(if $(COMPOSE),$(MAKE) compose-test,@echo "compose-test: not run, no Docker engine answers here and COMPOSE names no other compose command")
 
 # Branch coverage of all tests, at 90 % or more. It takes up to half as long again.

@@ -10,6 +10,7 @@ from threading import Lock
 from typing import Protocol
 
 import sqlalchemy
+from sqlalchemy import Connection
 from sqlalchemy.exc import DBAPIError, OperationalError
 from sqlalchemy.pool import NullPool
 
@@ -96,6 +97,25 @@ class SqliteDatabase:
                 return database
 
 
+def integrity_of(connection: Connection) -> str:
+    """Every index has all rows of its table in order, and every table's pages are sound (amcheck)."""
+    connection.exec_driver_sql("CREATE EXTENSION IF NOT EXISTS amcheck")
+    try:
+        connection.exec_driver_sql(
+            "SELECT bt_index_check(i.indexrelid, true) FROM pg_index i JOIN pg_class c "
+            "ON c.oid = i.indexrelid JOIN pg_am a ON a.oid = c.relam "
+            # Not those of partitioned tables: their partitions have indexes of their own.
+            "WHERE a.amname = 'btree' AND c.relkind = 'i' AND c.relpersistence = 'p'"
+        )
+        found = connection.exec_driver_sql(
+            "SELECT c.relname, v.msg FROM pg_class c, verify_heapam(c.oid) v "
+            "WHERE c.relkind = 'r' AND c.relpersistence = 'p'"
+        ).all()
+    except DBAPIError as error:
+        return str(error.orig)
+    return "; ".join(f"{table}: {message}" for table, message in found) or "ok"
+
+
 class PostgresqlDatabase:
     """A server of this run's own, which the service reaches through a network that can be cut."""
 
@@ -117,22 +137,9 @@ class PostgresqlDatabase:
         }
 
     def integrity(self) -> str:
-        """Every index has all rows of its table in order, and every table's pages are sound (amcheck)."""
+        """What amcheck says of indexes and pages."""
         with self._connection() as connection:
-            connection.exec_driver_sql("CREATE EXTENSION IF NOT EXISTS amcheck")
-            try:
-                connection.exec_driver_sql(
-                    "SELECT bt_index_check(i.indexrelid, true) FROM pg_index i JOIN pg_class c "
-                    "ON c.oid = i.indexrelid JOIN pg_am a ON a.oid = c.relam "
-                    "WHERE a.amname = 'btree' AND c.relpersistence = 'p'"
-                )
-                found = connection.exec_driver_sql(
-                    "SELECT c.relname, v.msg FROM pg_class c, verify_heapam(c.oid) v "
-                    "WHERE c.relkind = 'r' AND c.relpersistence = 'p'"
-                ).all()
-            except DBAPIError as error:
-                return str(error.orig)
-        return "; ".join(f"{table}: {message}" for table, message in found) or "ok"
+            return integrity_of(connection)
 
     def diagnosed_twice(self) -> list[str]:
         with self._connection() as connection:

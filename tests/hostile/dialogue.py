@@ -92,6 +92,9 @@ def _use_everything(port: int, server: Server) -> None:
                 client.buffered_reports(reference)
         client.read(f"{PRO}/GGIO1.Types", FunctionalConstraint.ST)
         client.read(f"{PRO}/GGIO1.AnIn1", FunctionalConstraint.MX)
+        client.read_together(
+            [f"{PRO}/GGIO1.Ind01.stVal", f"{PRO}/GGIO1.Ind02.stVal"], FunctionalConstraint.ST
+        )
         client.read_data_set(f"{PRO}/LLN0.DSet01")
         for control in (1, 2):
             client.operate(f"{CON}/RBGGIO1.SPCSO{control:02d}", value=True)

@@ -33,6 +33,9 @@ REQUESTS_A_CONNECTION = 60
 MAX_FILE_BYTES = 1_000_000
 
 
+STATES = tuple(f"{PRO}/GGIO1.Ind0{number}.stVal" for number in (1, 2, 3, 4))
+
+
 class Visitor:
     """Asks at random; a record's files go to a real store."""
 
@@ -57,6 +60,7 @@ class Visitor:
                 lambda c: c.buffered_reports(f"{PRO}/LLN0"),
                 lambda c: c.read(f"{PRO}/GGIO1.Types", FunctionalConstraint.ST),
                 lambda c: c.read(f"{PRO}/GGIO1.AnIn1", FunctionalConstraint.MX),
+                lambda c: c.read_together(STATES, FunctionalConstraint.ST),
                 lambda c: c.read_data_set(f"{PRO}/LLN0.DSet01"),
                 lambda c: c.operate(f"{CON}/RBGGIO1.SPCSO0{self._chance.randint(1, 4)}", value=True),
                 self._subscribe,

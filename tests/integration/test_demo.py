@@ -149,6 +149,7 @@ def test_a_simulator_that_dies_ends_the_demo(tmp_path: Path) -> None:
     assert eventually(lambda: not any(is_alive(process_id) for process_id in below), 5)
 
 
+@pytest.mark.campaign
 def test_a_port_lost_before_the_start_is_replaced(tmp_path: Path) -> None:
     chosen = [SERVICE_PORT]
     told: list[str] = []

@@ -18,6 +18,7 @@ from tests.ied_sim.motor.plants import plant, short
 
 Array = NDArray[np.float64]
 RPM = 30 / pi
+RECORDED_S = 0.5
 
 
 def rms(samples: Array) -> Array:
@@ -204,16 +205,16 @@ def test_star_and_delta_of_equal_impedance_draw_the_same() -> None:
     assert np.abs(in_star - in_delta).max() < 1e-6 * np.abs(in_star).max()
 
 
-def test_settling_and_recording_a_second_is_fast_enough_for_real_time() -> None:
+def test_settling_and_recording_is_fast_enough_for_real_time() -> None:
     faulted = plant(fault=short(0.05))
     faulted.operation(0.0, 0.01, 10_000)
     fastest_s = min(_seconds(faulted) for _ in range(5))
-    assert fastest_s < 0.15
+    assert fastest_s < RECORDED_S  # about a tenth of it; a slow machine takes half
 
 
 def _seconds(motor_plant: MotorPlant) -> float:
     begin = time.thread_time()
-    motor_plant.operation(0.0, 0.5, 10_000)
+    motor_plant.operation(0.0, RECORDED_S, 10_000)
     return time.thread_time() - begin
 
 

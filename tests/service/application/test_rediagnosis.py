@@ -15,8 +15,8 @@ import pytest
 
 from core.diagnosis.methods import DEFAULT_METHOD
 from service.configuration.recordings_url import BucketPlace
-from service.jobs import JobRunner
 from service.jobs.limits import JobLimits
+from service.jobs.runner import JobRunner
 from service.jobs.worker import diagnose_recording, prepare_worker
 from service.storage.states import JobState
 from service.timing.backoff import Backoff
@@ -150,6 +150,7 @@ def _end(process: "subprocess.Popen[str]") -> None:
     process.communicate(timeout=30)
 
 
+@pytest.mark.campaign
 def test_a_scheduler_that_dies_is_told_in_one_line_and_the_batch_goes_on(
     archive: Archive, tmp_path: Path
 ) -> None:
@@ -171,6 +172,7 @@ def test_a_scheduler_that_dies_is_told_in_one_line_and_the_batch_goes_on(
     assert archive.made() == [1] * RECORDS
 
 
+@pytest.mark.campaign
 def test_a_worker_that_sees_a_bucket_alone_gives_what_the_service_gives(
     tmp_path: Path, s3: S3Server, place: BucketPlace, by_the_service: list[str]
 ) -> None:

@@ -154,6 +154,7 @@ def test_workers_refuse_a_database_without_the_service(tmp_path: Path, postgresq
     assert "expected the motors that the service has, found others" in line
 
 
+@pytest.mark.campaign
 def test_workers_refuse_recordings_that_they_cannot_read(
     tmp_path: Path, postgresql_url: str, served_plant: Repository
 ) -> None:

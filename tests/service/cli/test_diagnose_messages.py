@@ -12,7 +12,7 @@ import pytest
 from core.machines.motor_file.writer import write_motor
 from core.recordings import Channel, Quantity, Recording, comtrade
 from service.cli import main
-from service.jobs import Diagnosed, DiagnosisTask
+from service.jobs.task import Diagnosed, DiagnosisTask
 from service.jobs.worker import diagnose_recording
 from service.recording_store.recording import LocalFile
 from testing.machines.motors import REFERENCE

@@ -26,8 +26,9 @@ from service.api.conditions.documents import condition_document
 from service.condition import work, worker
 from service.condition.work import ConditionWork
 from service.condition.worker import FoldTask, ObserveTask, fold_due
-from service.jobs import Diagnosed, DiagnosisTask, JobRunner, Outcome
 from service.jobs.limits import JobLimits
+from service.jobs.runner import JobRunner
+from service.jobs.task import Diagnosed, DiagnosisTask, Outcome
 from service.jobs.worker_process import follow_service
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, migrate

@@ -4,8 +4,8 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from service.jobs import JobRunner
 from service.jobs.limits import JobLimits
+from service.jobs.runner import JobRunner
 from service.jobs.worker_process import follow_service
 from service.recording_store.store import RecordingStore
 from service.storage import Repository

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from core.starts.examined import ExaminedStart, StartStress
-from service.jobs import Diagnosed, DiagnosisTask, Outcome, Rejected
+from service.jobs.task import Diagnosed, DiagnosisTask, Outcome, Rejected
 from service.jobs.worker_process import follow_service
 from service.recording_store.recording import LocalFile
 from testing.service.plants import NOW_NS, SECOND_NS, fault

@@ -67,6 +67,7 @@ def jobs_of(repository: Repository, process_id: int) -> int | None:
     return next((one.jobs for one in repository.job_runners() if one.process_id == process_id), None)
 
 
+@pytest.mark.campaign
 @pytest.mark.timeout(400)
 def test_a_host_frozen_inside_a_transaction_loses_its_job_and_goes_on_when_it_wakes(
     repository: Repository, store: FolderStore, engine: Engine, database_url: str, tmp_path: Path

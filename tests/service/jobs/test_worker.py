@@ -13,8 +13,9 @@ from core.recordings import Channel, Quantity, Recording
 from core.recordings.comtrade.writer import write
 from core.starts.measuring import measure_start
 from core.time_stamps import nanoseconds
-from service.jobs import Diagnosed, DiagnosisTask, JobRunner, Rejected
 from service.jobs.limits import JobLimits
+from service.jobs.runner import JobRunner
+from service.jobs.task import Diagnosed, DiagnosisTask, Rejected
 from service.jobs.worker import diagnose_recording, prepare_worker
 from service.recording_store.recording import LocalFile
 from service.recording_store.store import RecordingStore
@@ -182,6 +183,12 @@ def test_a_baseline_that_cannot_be_learnt_rejects_with_its_reason(tmp_path: Path
     outcome = diagnose_recording(replace(task(entry), baseline=baseline))
     assert isinstance(outcome, Rejected)
     assert "the motor's baseline cannot be learnt" in outcome.reason
+
+
+def test_a_worker_starts_without_the_database() -> None:
+    names = "service.jobs.worker_process, service.jobs.worker, service.jobs.task"
+    program = f"import sys, {names}; sys.exit('sqlalchemy' in sys.modules)"
+    subprocess.run([sys.executable, "-c", program], check=True)
 
 
 def test_the_services_own_process_goes_without_the_compiler() -> None:
