@@ -25,6 +25,9 @@ pytestmark = pytest.mark.timeout(300)
 RECORD_S = 1.0
 """0.2 s before the trigger, 0.8 s after it."""
 
+SLOWNESS = 2.0
+"""Of a machine that others slow down from outside; one motor after the other would take more than that."""
+
 
 @pytest.fixture(autouse=True)
 def _one_demo_at_a_time(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
@@ -59,7 +62,7 @@ def test_the_demo_finds_the_truth_and_leaves_nothing_running(tmp_path: Path) -> 
         for diagnosis in motor["diagnoses"]:
             agrees_with_truth(motor["truth"], diagnosis)
         quickest = min(diagnosis["trigger_to_diagnosis_seconds"] for diagnosis in motor["diagnoses"])
-        assert 0.8 < quickest <= RECORD_S + 3.0 * crowding(), "all six at once"
+        assert 0.8 < quickest <= SLOWNESS * (RECORD_S + 3.0 * crowding()), "all six at once"
     assert "at most" in table
     assert "…" not in table
     assert len(seen) >= 4, "a simulator, a service, a collector, workers"

@@ -68,7 +68,7 @@ def test_a_queue_does_not_hurry_the_listings(bench: Bench, silent: ScriptedRelay
     ended, granted = bench.requested(first).fetched_ns, bench.requested(second).triggered_ns
     assert ended is not None
     assert granted is not None
-    assert granted - ended < AT_ONCE_S * SECOND_NS
+    assert granted - ended < 0.1 * LONG_S * SECOND_NS, "not only when the relay is polled"
 
 
 def test_the_next_follows_at_once_where_no_record_came(bench: Bench, silent: ScriptedRelay) -> None:
