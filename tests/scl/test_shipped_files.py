@@ -9,6 +9,7 @@ from scl import Address, Scl
 from scl.control_block_model import OptionalFields
 from scl.data_model import DataAttribute, FunctionalConstraint, TriggerOptions
 from scl.demo_plant import write_demo_plant
+from testing.scl_schema import schema_errors
 
 RELAYS = {
     "PUMP-A1": ("FACTORY_A", "A1_SEL710", 10210),
@@ -30,6 +31,21 @@ def test_read_without_a_warning_as_edition_2(path: Path) -> None:
     read = scl.read(path)
     assert read.warnings == ()
     assert read.header.edition == "2"
+
+
+@pytest.mark.parametrize("path", [scl.SEL710_ICD, scl.DEMO_PLANT_SCD])
+def test_the_schema_takes_them(path: Path) -> None:
+    assert schema_errors(path) == []
+
+
+def test_the_schema_refuses_what_it_does_not_know(tmp_path: Path) -> None:
+    text = scl.SEL710_ICD.read_text(encoding="utf-8")
+    file = tmp_path / "relay.icd"
+    file.write_text(
+        text.replace('<IED name="TEMPLATE"', '<IED title="relay" name="TEMPLATE"'), encoding="utf-8"
+    )
+    (error,) = schema_errors(file)
+    assert "The attribute 'title' is not allowed" in error
 
 
 def test_committed_plant_is_what_its_table_and_the_icd_make(tmp_path: Path) -> None:

@@ -17,8 +17,8 @@ from service.storage import Repository
 from testing.ports import LOOPBACK
 from testing.service.conditions import FAULT, HEALTHY, tell
 from testing.service.gateways import running_gateways
+from testing.service.iec104_master import Master
 from testing.waiting import wait_until
-from tests.service.gateways.iec104.telegrams import Master
 from tests.service.gateways.modbus import test_modbus as modbus
 from tests.service.gateways.opcua import test_opcua as opcua
 from tests.service.gateways.settings import port_of, settings_of

@@ -20,9 +20,9 @@ from service.gateways.supervision import PlantGateways
 from testing.ports import LOOPBACK, free_port
 from testing.service import sparkplug
 from testing.service.gateways import running_gateways
+from testing.service.iec104_master import Master
 from testing.service.mosquitto import Mosquitto
 from testing.waiting import eventually, wait_until
-from tests.service.gateways.iec104.telegrams import Master
 from tests.service.gateways.iec61850.test_iec61850 import PUMP as LOGICAL_DEVICE
 from tests.service.gateways.modbus.test_modbus import PUMP as REGISTER
 from tests.service.gateways.modbus.test_modbus import figures

@@ -26,9 +26,7 @@ from testing.not_installed import not_installed
 from testing.ports import LOOPBACK, free_port
 from testing.service.conditions import FAULT, HEALTHY, tell
 from testing.service.gateways import running_gateways
-from testing.service.links import set_link_state
-from testing.service.plants import NOW_NS, SECOND_NS
-from tests.service.gateways.iec104.telegrams import (
+from testing.service.iec104_master import (
     FLOAT,
     INTERROGATED,
     PLAIN_FLOAT,
@@ -40,6 +38,8 @@ from tests.service.gateways.iec104.telegrams import (
     WHOLE,
     Master,
 )
+from testing.service.links import set_link_state
+from testing.service.plants import NOW_NS, SECOND_NS
 from tests.service.gateways.iec104.test_iec104 import FAN, PUMP
 from tests.service.gateways.settings import port_of, settings_of
 

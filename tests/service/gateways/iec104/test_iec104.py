@@ -20,10 +20,7 @@ from service.storage.states import AlarmKind, LinkState
 from testing.ports import LOOPBACK
 from testing.service.conditions import FAULT, HEALTHY, tell
 from testing.service.gateways import running_gateways
-from testing.service.links import set_link_state
-from testing.service.plants import NOW_NS
-from testing.waiting import eventually
-from tests.service.gateways.iec104.telegrams import (
+from testing.service.iec104_master import (
     FLOAT,
     INTERROGATED,
     INVALID,
@@ -36,6 +33,9 @@ from tests.service.gateways.iec104.telegrams import (
     SPONTANEOUS,
     Master,
 )
+from testing.service.links import set_link_state
+from testing.service.plants import NOW_NS
+from testing.waiting import eventually
 from tests.service.gateways.settings import port_of, settings_of
 
 FAN, PUMP = FIRST, FIRST + BLOCK

@@ -13,7 +13,7 @@ from service.storage import Repository
 from testing.ports import LOOPBACK
 from testing.service.conditions import FAULT, tell
 from testing.service.gateways import running_gateways
-from tests.service.gateways.iec104.telegrams import INTERROGATION, Master
+from testing.service.iec104_master import INTERROGATION, Master
 from tests.service.gateways.settings import port_of, settings_of
 from tests.service.gateways.spoiled_messages import Spoiling, try_spoilings
 

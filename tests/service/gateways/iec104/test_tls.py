@@ -20,8 +20,8 @@ from testing.relays.certificates import Identity
 from testing.relays.pki import Pki
 from testing.service.conditions import FAULT, tell
 from testing.service.gateways import running_gateways, started_gateways
+from testing.service.iec104_master import Master
 from testing.waiting import wait_until
-from tests.service.gateways.iec104.telegrams import Master
 from tests.service.gateways.iec104.test_iec104 import PUMP
 from tests.service.gateways.iec104.test_spoiled_telegrams import START_DATA_TRANSFER, UNITS, telegram
 from tests.service.gateways.settings import port_of, settings_of

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from lxml import etree
 from open61850 import scl as open_scl
+from scl_loader import SCD_handler
 
 import scl
 from mms import Client, FunctionalConstraint
@@ -14,6 +15,7 @@ from service.gateways.iec61850.description import NAMESPACE, TEMPLATE, descripti
 from service.storage import Repository
 from testing.ports import LOOPBACK
 from testing.relays.pki import Pki
+from testing.scl_schema import schema_errors
 from testing.service.gateways import running_gateways
 from tests.service.gateways.iec61850.test_iec61850 import FAN, PUMP, port
 from tests.service.gateways.iec61850.test_tls import files_of
@@ -68,6 +70,19 @@ def test_the_instance_is_read_by_ours_and_by_another_reader(port: int, tmp_path:
     assert {device.name for device in ours.ied("MCC").logical_devices} == {PUMP, FAN, "MCCPLANT"}
     (theirs,) = open_scl.load_ieds(file)
     assert set(theirs.domains) == {PUMP, FAN, "MCCPLANT"}
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # it leaves the file open
+@pytest.mark.parametrize("kind", ["iid", "icd"])
+def test_the_schema_and_its_reader_take_the_files(port: int, tmp_path: Path, kind: str) -> None:
+    file = tmp_path / f"statorwatch.{kind}"
+    assert schema_errors(file) == []
+    (ied,) = SCD_handler(str(file)).get_all_IEDs()
+    (access_point,) = ied.get_children("AccessPoint")
+    devices = {f"MCC{device.inst}": device for device in ied.get_children_LDs(access_point.name)}
+    assert set(devices) == {PUMP, FAN, "MCCPLANT"}
+    health = devices[PUMP].get_LN_by_name("ZMOT1").EEHealth
+    assert {leaf.rpartition(".")[2] for leaf in health.get_DA_leaf_nodes()} >= {"stVal", "q", "t"}
 
 
 def test_what_can_be_had_is_the_same_under_no_name_of_its_own(port: int, tmp_path: Path) -> None:
