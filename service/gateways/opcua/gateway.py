@@ -92,7 +92,7 @@ async def _server(
 ) -> BoundedServer:
     data_directory = context.settings.data_directory
     uri = f"urn:statorwatch:{installation_id(data_directory)}"
-    server = BoundedServer(user_manager=users)
+    server = BoundedServer(users)
     server.product_uri, server.manufacturer_name = "urn:statorwatch", "StatorWatch"
     gc.disable()  # the objects of the standard's nodes stay for good: it is in vain to look through them
     try:

@@ -97,7 +97,7 @@ class PlantMethods:
             return ua.StatusCode(ua.StatusCodes.BadUserAccessDenied)
         if has_changed(self._repository, caller.account):
             return ua.StatusCode(ua.StatusCodes.BadUserAccessDenied)
-        return work(actor_of(caller.account))
+        return work(actor_of(caller.account, caller.address))
 
 
 def _argument(name: str, meaning: str) -> ua.Argument:

@@ -2,23 +2,24 @@
 
 The library keeps what has come of a chunk, however large its header says that it is. It holds sessions over
 channels that are not offered, and takes a client's word for whose certificate the channel is. It asks who
-a client is while all others wait, and lets connections without a session keep out others.
+a client is while all others wait, and lets connections without a session keep out others. Any number of
+sessions may be created on a connection, of which it forgets all but the last one.
 """
 
 import asyncio
 import struct
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any, Final
 
 import structlog
 from asyncua import Server, ua
 from asyncua.common.utils import ServiceError
 from asyncua.server.binary_server_asyncio import BinaryServer, OPCUAProtocol
-from asyncua.server.internal_session import InternalSession
 from asyncua.server.uaprocessor import UaProcessor
 from asyncua.ua.ua_binary import struct_from_binary, uatcp_to_binary
 
-from service.gateways.opcua.users import PlantUser, logged_in
+from service.gateways.opcua.sessions import BoundSession, PlantServer
+from service.gateways.opcua.users import PlantUser, ServiceUsers, logged_in
 
 log = structlog.get_logger(__name__)
 
@@ -38,12 +39,22 @@ REGISTER: Final = (
     ua.NodeId(ua.ObjectIds.RegisterServer2Request_Encoding_DefaultBinary),
 )
 """Requests of other servers, to be listed by a discovery server: anybody's, and kept for good."""
+OF_NO_SESSION: Final = (
+    CREATE,
+    ua.NodeId(ua.ObjectIds.GetEndpointsRequest_Encoding_DefaultBinary),
+    ua.NodeId(ua.ObjectIds.FindServersRequest_Encoding_DefaultBinary),
+    ua.NodeId(ua.ObjectIds.CloseSecureChannelRequest_Encoding_DefaultBinary),
+)
+"""Requests that name no session."""
 
 
 class BoundedServer(Server):  # type: ignore[misc]
     """Serves as the library does, through connections that are bounded."""
 
     bserver: BinaryServer | None
+
+    def __init__(self, users: ServiceUsers) -> None:
+        super().__init__(PlantServer(user_manager=users))
 
     async def start(self) -> None:
         """Listen. Raises OSError."""
@@ -58,11 +69,11 @@ class BoundedServer(Server):  # type: ignore[misc]
             await self.iserver.stop()
             raise
 
-    def sessions(self) -> Sequence[InternalSession]:
+    def sessions(self) -> Sequence[BoundSession]:
         """Return the sessions of clients, also of those whose connection was lost."""
         return list(self.iserver._external_sessions.values())  # noqa: SLF001 - the library has no other list
 
-    async def end_session(self, session: InternalSession) -> None:
+    async def end_session(self, session: BoundSession) -> None:
         """End a session with its subscriptions, and the connection that it has."""
         await session.close_session(delete_subs=True)
         if self.bserver is None:
@@ -99,6 +110,7 @@ class _BoundedProtocol(OPCUAProtocol):  # type: ignore[misc]
         super().connection_made(transport)
         if self.processor is not None:
             self.processor = _StrictProcessor(self.iserver, self.transport, self.limits)
+            self.processor.others = self.clients
             self.processor.set_policies(self.policies)
 
     def data_received(self, data: bytes) -> None:
@@ -132,7 +144,10 @@ class _BoundedProtocol(OPCUAProtocol):  # type: ignore[misc]
 class _StrictProcessor(UaProcessor):  # type: ignore[misc]
     """Answers over channels that are offered; over others it only tells which ones are."""
 
-    session: InternalSession | None
+    session: BoundSession | None
+    others: Iterable["_BoundedProtocol"] = ()
+    """All connections."""
+
     is_logging_in = False
     """Whether a name and a password are looked at."""
 
@@ -159,23 +174,53 @@ class _StrictProcessor(UaProcessor):  # type: ignore[misc]
     async def _process_message(self, typeid: Any, requesthdr: Any, seqhdr: Any, body: Any) -> Any:
         if typeid in REGISTER:
             raise ServiceError(ua.StatusCodes.BadServiceUnsupported)
-        if typeid in (CREATE, ACTIVATE):
-            self._check_channel()
         if typeid == CREATE:
-            self._check_certificate(struct_from_binary(ua.CreateSessionParameters, body.copy()))
-        user = None
-        if typeid == ACTIVATE:
-            wanted = struct_from_binary(ua.ActivateSessionParameters, body.copy())
-            user = await self._user(requesthdr.AuthenticationToken, wanted.UserIdentityToken)
-        with logged_in(user):
+            self._check_channel()
+            return await self._create(typeid, requesthdr, seqhdr, body)
+        token = requesthdr.AuthenticationToken
+        if self.session is not None and typeid not in OF_NO_SESSION and token != self.session.auth_token:
+            raise ServiceError(ua.StatusCodes.BadSessionIdInvalid)
+        if typeid != ACTIVATE:
             return await super()._process_message(typeid, requesthdr, seqhdr, body)
+        self._check_channel()
+        wanted = struct_from_binary(ua.ActivateSessionParameters, body.copy())
+        existing = self.session or self.iserver.lookup_external_session(token)
+        user = await self._user(existing, wanted.UserIdentityToken)
+        is_taken_over = self.session is None and existing is not None
+        if is_taken_over:
+            existing.check_take_over(self._connection.security_policy.peer_certificate, user)
+        with logged_in(user):
+            answered = await super()._process_message(typeid, requesthdr, seqhdr, body)
+        if is_taken_over:
+            self._take_from_others(existing)
+        return answered
 
-    async def _user(self, session_token: ua.NodeId, identity: object) -> PlantUser | None:
+    async def _create(self, typeid: Any, requesthdr: Any, seqhdr: Any, body: Any) -> Any:
+        """Create a session, where the one before has ended: the library forgets that."""
+        if self.session is not None and not self.session.is_closed:
+            raise ServiceError(ua.StatusCodes.BadTooManySessions)
+        self._check_certificate(struct_from_binary(ua.CreateSessionParameters, body.copy()))
+        answered = await super()._process_message(typeid, requesthdr, seqhdr, body)
+        if self.session is not None:
+            self.session.client_certificate = self._connection.security_policy.peer_certificate
+        return answered
+
+    def _take_from_others(self, session: BoundSession) -> None:
+        """End the connection that had the session before, which may be lost without knowing it."""
+        for other in list(self.others):
+            if (
+                other.processor is not self
+                and other.processor is not None
+                and other.processor.session is session
+            ):
+                other.processor.session = None  # a connection's end ends its session
+                other.transport.close()
+
+    async def _user(self, session: BoundSession | None, identity: object) -> PlantUser | None:
         """Return whose name and password a client shows; None where the library refuses it, or asks for none.
 
         Only this connection waits meanwhile: the library takes its next message when this one is done with.
         """
-        session = self.session or self.iserver.lookup_external_session(session_token)
         if session is None or not isinstance(identity, ua.UserNameIdentityToken) or not identity.UserName:
             return None
         try:
@@ -184,7 +229,9 @@ class _StrictProcessor(UaProcessor):  # type: ignore[misc]
             return None
         self.is_logging_in = True
         try:
-            user: PlantUser = await self.iserver.user_manager.log_in(name, password or "")
+            user: PlantUser = await self.iserver.user_manager.log_in(
+                name, password or "", host=str(self.name[0])
+            )
         finally:
             self.is_logging_in = False
         return user

@@ -27,14 +27,18 @@ from service.timing.database_silence import database_trouble
 log = structlog.get_logger(__name__)
 
 ADDRESS = "opcua"
-"""Where logins come from, for the audit trail and for the count of those that failed."""
+"""Before the host of a client, for the audit trail and for the count of logins that failed."""
 
 
 @dataclass
 class PlantUser(User):  # type: ignore[misc]
-    """Somebody at a session. account: as it was at the login; None for who has not said who it is."""
+    """Somebody at a session.
+
+    account: as it was at the login; None for who has not said who it is.  address: where from.
+    """
 
     account: Account | None = None
+    address: str = ADDRESS
 
     def may(self, permission: Permission) -> bool:
         """Return whether the roles allow this. Somebody unknown may look, where the settings say so."""
@@ -43,9 +47,9 @@ class PlantUser(User):  # type: ignore[misc]
         return permission in permissions_of(self.account.roles)
 
 
-def actor_of(account: Account) -> Actor:
+def actor_of(account: Account, address: str) -> Actor:
     """Return who does what is asked for with an account."""
-    return Actor(account.name, ADDRESS, account.roles)
+    return Actor(account.name, address, account.roles)
 
 
 def has_changed(repository: Repository, account: Account) -> bool:
@@ -89,17 +93,18 @@ class ServiceUsers(UserManager):  # type: ignore[misc]
         self._anonymous = anonymous
         self._threads = LoginThreads()
 
-    async def log_in(self, name: str, password: str) -> PlantUser:
-        """Return whose name and password it is. Raises ServiceError."""
+    async def log_in(self, name: str, password: str, *, host: str) -> PlantUser:
+        """Return whose name and password it is. host: where from. Raises ServiceError."""
+        address = f"{ADDRESS} {host}"
         try:
-            account = await self._threads.run(partial(self._account, account_of(name), password))
+            account = await self._threads.run(partial(self._account, account_of(name), password, address))
         except (LoginLockedError, LoginRefusedError) as refused:
             log.warning("a client is not let in", reason=str(refused))
             raise ServiceError(ua.StatusCodes.BadUserAccessDenied) from refused
         except SQLAlchemyError as error:
             log.warning("a client is not let in", reason=database_trouble(error))
             raise ServiceError(ua.StatusCodes.BadResourceUnavailable) from error
-        user = PlantUser(UserRole.User, account.name, account)
+        user = PlantUser(UserRole.User, account.name, account, address)
         if not user.may(Permission.VIEW):
             raise ServiceError(ua.StatusCodes.BadUserAccessDenied)
         return user
@@ -121,11 +126,11 @@ class ServiceUsers(UserManager):  # type: ignore[misc]
         """Look at no more logins."""
         self._threads.close()
 
-    def _account(self, name: str, password: str) -> Account:
+    def _account(self, name: str, password: str, address: str) -> Account:
         now_ns = time.time_ns()
-        attempt(self._repository, self._settings, name, ADDRESS, now_ns=now_ns)
+        attempt(self._repository, self._settings, name, address, now_ns=now_ns)
         account = self._known(name)  # before its password, which may be changed meanwhile
-        check_password(self._repository, name, password, ADDRESS, now_ns=now_ns)
+        check_password(self._repository, name, password, address, now_ns=now_ns)
         if account is None:
             raise LoginRefusedError
         return account

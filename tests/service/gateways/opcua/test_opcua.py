@@ -249,7 +249,7 @@ def test_users_may_what_their_roles_allow(repository: Repository, tmp_path: Path
         assert asyncio.run(trigger("otto", "wrong")) == "BadUserAccessDenied"
         request = asyncio.run(trigger("otto"))
     assert repository.recording_request(request).motor == "PUMP-A1"
-    assert ("recording-requested", "otto", "opcua") in done(repository)
+    assert ("recording-requested", "otto", f"opcua {LOOPBACK}") in done(repository)
 
 
 def test_an_alarm_is_acknowledged_by_who_may(repository: Repository, tmp_path: Path) -> None:
@@ -275,7 +275,7 @@ def test_an_alarm_is_acknowledged_by_who_may(repository: Repository, tmp_path: P
         assert asyncio.run(acknowledge("otto", alarm.id)) == "BadInvalidState"
     seen = repository.alarm(alarm.id)
     assert (seen.state, seen.changed_by, seen.comment) == (AlarmState.ACKNOWLEDGED, "otto", "seen")
-    assert ("alarm-acknowledged", "otto", "opcua") in done(repository)
+    assert ("alarm-acknowledged", "otto", f"opcua {LOOPBACK}") in done(repository)
 
 
 def test_open62541_reads_encrypted_with_history_and_has_a_motor_recorded(
@@ -303,7 +303,7 @@ def test_open62541_reads_encrypted_with_history_and_has_a_motor_recorded(
     seen = json.loads(peer.stdout.splitlines()[-1])
     assert (seen["state"], seen["level"], seen["health"]) == ("fault", 0.0121, 1)
     assert seen["history"] == [0.01, 0.02, 0.03]
-    assert ("recording-requested", "otto", "opcua") in done(repository)
+    assert ("recording-requested", "otto", f"opcua {LOOPBACK}") in done(repository)
     assert repository.recording_requests(motor="PUMP-A1", limit=1).items
 
 

@@ -171,7 +171,7 @@ def test_each_policy_lets_in_who_knows_the_password(repository: Repository, tmp_
             refused = asyncio.run(state(chosen, own, policy=policy, password="wrong"))  # noqa: S106 - it is
             assert refused == "BadUserAccessDenied", policy
     failed = [origin for action, _, origin in done(repository) if action == "login-failed"]
-    assert failed == ["opcua"] * len(POLICIES)
+    assert failed == [f"opcua {LOOPBACK}"] * len(POLICIES)
 
 
 def test_a_channel_that_is_signed_alone_is_refused_at_once(repository: Repository, tmp_path: Path) -> None:

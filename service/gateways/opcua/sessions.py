@@ -1,0 +1,62 @@
+"""Whose session it is: OPC 10000-4 (5.6) binds one to its channel, its client and its user.
+
+The library counts the tokens of sessions up from 1000, looks at the token of no request, and gives a session
+to whoever names its token on a new channel.
+"""
+
+import secrets
+from typing import Any, Final
+
+from asyncua import ua
+from asyncua.common.utils import ServiceError
+from asyncua.crypto.permission_rules import User, UserRole
+from asyncua.server.internal_server import InternalServer
+from asyncua.server.internal_session import InternalSession, SessionState
+
+from service.gateways.opcua.users import PlantUser
+
+TOKEN_BYTES: Final = 32
+"""As many as OPC 10000-4 asks for."""
+
+
+class BoundSession(InternalSession):  # type: ignore[misc]
+    """A session with a token that nobody guesses. client_certificate: of the channel it was created on."""
+
+    client_certificate: bytes | None = None
+
+    def __init__(
+        self, iserver: InternalServer, name: object, user: User | None = None, *, external: bool
+    ) -> None:
+        super().__init__(
+            iserver, iserver.aspace, iserver.subscription_service, name, user or User(role=UserRole.Anonymous)
+        )
+        self.external = external
+        self.auth_token = ua.NodeId(secrets.token_bytes(TOKEN_BYTES), 0, ua.NodeIdType.ByteString)
+        if external:
+            iserver.register_external_session(self)
+
+    @property
+    def is_closed(self) -> bool:
+        """Return whether it has ended."""
+        return bool(self.state is SessionState.Closed)
+
+    def check_take_over(self, certificate: bytes | None, user: PlantUser | None) -> None:
+        """Refuse a new channel of another client or another user. Raises ServiceError.
+
+        user: who logs in on the new channel; None for somebody who does not say who it is.
+        """
+        if not self.is_activated():
+            raise ServiceError(ua.StatusCodes.BadSessionNotActivated)
+        if certificate != self.client_certificate:
+            raise ServiceError(ua.StatusCodes.BadSecurityChecksFailed)
+        account = self.user.account if isinstance(self.user, PlantUser) else None
+        wanted = None if user is None else user.account
+        if (account and account.name) != (wanted and wanted.name):
+            raise ServiceError(ua.StatusCodes.BadIdentityChangeNotSupported)
+
+
+class PlantServer(InternalServer):  # type: ignore[misc]
+    """Holds such sessions."""
+
+    def create_session(self, name: Any, user: User | None = None, external: bool = False) -> BoundSession:
+        return BoundSession(self, name, user, external=external)
