@@ -1,7 +1,8 @@
 """An IED with its logical devices (IEC 61850-7-2)."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 from scl.control_block_model import DataSet, DataSetMember, ReportControl
 from scl.data_model import DataAttribute, DataObject
@@ -83,7 +84,7 @@ class AccessPoint:
     logical_devices: tuple[LogicalDevice, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Ied:
     """An intelligent electronic device; here a motor protection relay.
 
@@ -113,10 +114,15 @@ class Ied:
     access_points: tuple[AccessPoint, ...]
     reports_show_owner: bool = False
 
-    @property
+    @cached_property
     def logical_devices(self) -> tuple[LogicalDevice, ...]:
         """Logical devices of the servers of all access points."""
         return tuple(device for point in self.access_points for device in point.logical_devices)
+
+    @cached_property
+    def _first_of_inst(self) -> Mapping[str, LogicalDevice]:
+        """Logical devices by their inst; the first of two in different access points."""
+        return {device.inst: device for device in reversed(self.logical_devices)}
 
     def logical_nodes(self, ln_class: str | None = None) -> tuple[LogicalNode, ...]:
         """List the logical nodes.
@@ -215,10 +221,8 @@ class Ied:
         LogicalNode or None
             The node; None where the IED has none of its name.
         """
-        for device in self.logical_devices:
-            if device.inst == member.logical_device:
-                return device.logical_node(member.logical_node)
-        return None
+        device = self._first_of_inst.get(member.logical_device)
+        return None if device is None else device.logical_node(member.logical_node)
 
     def data_sets(self, *, covering: str | None = None) -> tuple[DataSet, ...]:
         """List data sets.

@@ -24,6 +24,9 @@ def _data_object(reference: str) -> str:
 class Attributes:
     """Data attributes of one server. All but `post` is called with the server locked.
 
+    `has_clients` tells whether there may be any: before, values are the first ones, and no report tells them.
+    The library would look through all reports of the server at each.
+
     Parameters
     ----------
     lib : ctypes.CDLL
@@ -40,6 +43,7 @@ class Attributes:
         self._server: Final = server
         self._posted: Final[deque[Mapping[str, Value | Quality]]] = deque()
         self._library_holds_model = False
+        self.has_clients = False
 
     def read(self, reference: str) -> Value:
         """Read an attribute.
@@ -99,6 +103,10 @@ class Attributes:
 
     def _apply(self, prepared: Sequence[_Update], *, whole_objects: bool) -> None:
         lib = self._lib
+        if not self.has_clients:
+            for reference, node, new in prepared:
+                lib.MmsValue_update(self._value(reference, node), new)
+            return
         lock_model = not self._library_holds_model
         if lock_model:
             lib.IedServer_lockDataModel(self._server)

@@ -330,6 +330,7 @@ class Server:
                 reason = "cannot listen there: the port is taken, or the address is not this machine's"
                 raise ServerStartFailed(where, "start the server", 0, reason)
             self._attributes.apply_posted_or_log()
+            self._attributes.has_clients = True
             self._state = _State.RUNNING
             self._limits.start()
 

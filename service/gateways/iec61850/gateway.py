@@ -2,6 +2,7 @@
 
 from importlib.metadata import version
 from pathlib import Path
+from typing import Final
 
 import structlog
 
@@ -25,6 +26,8 @@ from service.gateways.kept_file import replace_file
 from service.gateways.plant_state.figures import PlantChange, PlantState
 
 log = structlog.get_logger(__name__)
+
+VERSION: Final = version("statorwatch")
 
 INSTANCE = "statorwatch.iid"
 """File in the data directory: describes this IED, by its name."""
@@ -105,10 +108,10 @@ class PlantIed:
             relay = self._state.relays.get(figures.relay)
             vendor, model = ("", "") if relay is None else (relay.manufacturer, relay.type)
             path = self._path(device)
-            server.update_many(names(path, motor, vendor, model, version("statorwatch")) | meanings(path))
+            server.update_many(names(path, motor, vendor, model, VERSION) | meanings(path))
             server.update_many(motor_values(path, figures, relay), whole_objects=True)
         plant = self._path(PLANT)
-        server.update_many(names(plant, "The plant", "StatorWatch", "service", version("statorwatch")))
+        server.update_many(names(plant, "The plant", "StatorWatch", "service", VERSION))
         server.update_many(plant_values(plant, self._state))
         try:
             server.start()
@@ -135,10 +138,9 @@ class PlantIed:
         """Write the descriptions, and make a server of that of the instance."""
         settings = self._settings
         texts = {device: motor for motor, device in self._devices.items()}
-        revision = version("statorwatch")
         shown = {"password": settings.password_file is not None, "certificate": settings.tls is not None}
         for file, name in ((self._capabilities, TEMPLATE), (self._instance, settings.ied_name)):
-            replace_file(file, description(name, texts, plant=PLANT, revision=revision, shown=shown))
+            replace_file(file, description(name, texts, plant=PLANT, revision=VERSION, shown=shown))
         tls: TlsConfiguration | None = None if settings.tls is None else settings.tls.configuration()
         passwords = [] if settings.password_file is None else [_password(settings.password_file)]
         return Server(
@@ -150,7 +152,7 @@ class PlantIed:
             tls=tls,
             passwords=passwords,
             association_timeout_s=ASSOCIATION_S,
-            identity=Identity("StatorWatch", "Motor health", revision),
+            identity=Identity("StatorWatch", "Motor health", VERSION),
         )
 
     def _path(self, device: str) -> str:
