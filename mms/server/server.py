@@ -199,8 +199,9 @@ class Server:
         """Set several attributes as one change: a reader sees all of them or none.
 
         Either every value fits or nothing is changed. Times are set first, so that an event carries its own.
-        A report is closed when a second value of one of its members changes, so that one change may take
-        several reports, each of whole members. With `whole_objects` it takes one.
+        What is set before the server listens are its first values: no report tells them. A report is closed
+        when a second value of one of its members changes, so that one change may take several reports, each
+        of whole members. With `whole_objects` it takes one.
 
         Parameters
         ----------

@@ -12,6 +12,7 @@ import pytest
 from mms import (
     Client,
     EntryNotFound,
+    FunctionalConstraint,
     MmsError,
     NotFound,
     ProtocolError,
@@ -24,7 +25,8 @@ from mms import (
     Validity,
 )
 from mms.client.reports import Subscriptions, _Field
-from testing.ports import LOOPBACK
+from testing.ports import LOOPBACK, free_port
+from testing.relays.model import MODEL_TEXT
 from testing.relays.serving import RelayProcess, start_relay
 
 BUFFERED = "T1PRO/LLN0.BR.BRep01"
@@ -227,6 +229,17 @@ def test_a_full_buffer_is_flagged() -> None:
         assert not any(report.buffer_overflow for report in found[1:])
         assert 1 < len(found) < 100
         assert _numbers(found)[-1] == 100
+
+
+def test_first_values_are_no_events() -> None:
+    server = Server(MODEL_TEXT, port=free_port())
+    server.update_many(_event(1))
+    with server, Client.connect(LOOPBACK, server.port) as client:
+        assert client.read(f"{IND01}.stVal", FunctionalConstraint.ST) is True
+        server.update_many(_event(2))
+        reports = _queue()
+        client.subscribe(BUFFERED, reports)
+        assert _numbers(_drain(reports)) == [2]
 
 
 def test_an_entry_the_relay_no_longer_holds_is_named(relay: Server, client: Client) -> None:
