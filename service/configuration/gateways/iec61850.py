@@ -15,7 +15,7 @@ class Iec61850Settings(BaseModel):
     """The IEC 61850 server. It can only be read.
 
     ied_name: of the service as an IED.  tls: its certificate, and those of the clients.  password_file: the
-    password that clients show.  open_to_all: listens beyond loopback with neither.
+    password that clients show.  open_to_all: listens beyond loopback without TLS.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
@@ -31,9 +31,8 @@ class Iec61850Settings(BaseModel):
 
     @model_validator(mode="after")
     def _guarded(self) -> Self:
-        is_guarded = self.tls is not None or self.password_file is not None
-        if not (self.bind_address.is_loopback or is_guarded or self.open_to_all):
-            raise ValueError("tls, password_file or open_to_all = true, where bind_address is not loopback")
+        if not (self.bind_address.is_loopback or self.tls is not None or self.open_to_all):
+            raise ValueError("tls or open_to_all = true, where bind_address is not loopback")
         if self.tls is not None and self.tls.port is not None:
             raise ValueError("no tls.port: the server listens on port")
         return self

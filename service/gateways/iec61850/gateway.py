@@ -104,12 +104,8 @@ class PlantIed:
             self.problem = str(error)
             return
         for motor, device in self._devices.items():
-            figures = self._state.motors[motor]
-            relay = self._state.relays.get(figures.relay)
-            vendor, model = ("", "") if relay is None else (relay.manufacturer, relay.type)
-            path = self._path(device)
-            server.update_many(names(path, motor, vendor, model, VERSION) | meanings(path))
-            server.update_many(motor_values(path, figures, relay), whole_objects=True)
+            server.update_many(meanings(self._path(device)))
+            self._tell_motor(server, motor, self._state)
         plant = self._path(PLANT)
         server.update_many(names(plant, "The plant", "StatorWatch", "service", VERSION))
         server.update_many(plant_values(plant, self._state))
@@ -128,11 +124,17 @@ class PlantIed:
         told = {motor.name for motor in change.motors}
         for name, motor in change.now.motors.items():
             if name in told or motor.relay in relays:
-                relay = change.now.relays.get(motor.relay)
-                values = motor_values(self._path(self._devices[name]), motor, relay)
-                self._server.update_many(values, whole_objects=True)
+                self._tell_motor(self._server, name, change.now)
         values = plant_values(self._path(PLANT), change.now, change.before)
         self._server.update_many(values, whole_objects=True)
+
+    def _tell_motor(self, server: Server, name: str, state: PlantState) -> None:
+        """Set the values of a motor, and the names of its relay: it may have another one by now."""
+        motor, path = state.motors[name], self._path(self._devices[name])
+        relay = state.relays.get(motor.relay)
+        vendor, model = ("", "") if relay is None else (relay.manufacturer, relay.type)
+        server.update_many(names(path, name, vendor, model, VERSION))
+        server.update_many(motor_values(path, motor, relay), whole_objects=True)
 
     def _built(self) -> Server:
         """Write the descriptions, and make a server of that of the instance."""

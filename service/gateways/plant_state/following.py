@@ -19,7 +19,7 @@ log = structlog.get_logger(__name__)
 PERIOD_S = 0.5
 """Between two looks at the counter of changes."""
 
-SHORTEST_PAUSE_S = 1.0
+SHORTEST_PAUSE_S, LONGEST_PAUSE_S = 1.0, 15.0
 SHARE = 20
 """After a reading, no other one for so many times as long: a busy plant costs a twentieth of a core."""
 
@@ -27,7 +27,7 @@ REFRESH_S = 30.0
 """The state is read again at least so often: records get stale without anything being written."""
 
 SILENCE_S = 30.0
-"""Where the database has not answered for so long, no value is good any more."""
+"""What has not been known to be so for so long is not good any more: longer than a pause and a reading."""
 
 NOT_READ = "the plant's state has not been read yet"
 
@@ -85,7 +85,7 @@ class PlantFollower:
         found = self._reader.found
         if found.error is not None:
             raise found.error
-        silent_s = 0.0 if found.answered_s is None else time.monotonic() - found.answered_s
+        silent_s = 0.0 if found.current_s is None else time.monotonic() - found.current_s
         is_silent = silent_s > self._silence_s
         trouble = f"the database has not answered for {silent_s:.0f} s" if is_silent else None
         trouble = found.trouble or trouble
@@ -104,12 +104,12 @@ class PlantFollower:
 class _Found:
     """What reading has come to. It is replaced as a whole, so that no other thread sees half of it.
 
-    state: None before the first one.  answered_s: when the latest question was put that the database
-    answered.  trouble: why it does not answer.  error: what has ended the reading.
+    state: None before the first one.  current_s: when it was known last that the state is so.
+    trouble: why the database does not answer.  error: what has ended the reading.
     """
 
     state: PlantState | None = None
-    answered_s: float | None = None
+    current_s: float | None = None
     trouble: str | None = None
     error: Exception | None = None
 
@@ -167,17 +167,23 @@ class _Reader:
     def _look(self, counter: ChangeCounter) -> None:
         asked_s = time.monotonic()
         try:
-            state = self._read_if_changed(counter, asked_s)
+            counted = counter.value()
+            if self._is_pausing(asked_s):
+                # What has changed since is not known yet: the state may be another one by now.
+                current_s = asked_s if counted == self._counted else self.found.current_s
+                self.found = _Found(self.found.state, current_s)
+                return
+            state = self._read_if_changed(counted, asked_s)
         except SQLAlchemyError as error:
             self._counted = self._stamps = None
             self.found = replace(self.found, trouble=database_trouble(error))
             return
         self.found = _Found(state or self.found.state, asked_s)
 
-    def _read_if_changed(self, counter: ChangeCounter, now_s: float) -> PlantState | None:
-        counted = counter.value()
-        if self._read_s is not None and now_s - self._read_s < self._pause_s:
-            return None
+    def _is_pausing(self, now_s: float) -> bool:
+        return self._read_s is not None and now_s - self._read_s < self._pause_s
+
+    def _read_if_changed(self, counted: object, now_s: float) -> PlantState | None:
         is_old = self._read_s is None or now_s - self._read_s > REFRESH_S
         if counted == self._counted and not is_old:
             return None
@@ -188,6 +194,6 @@ class _Reader:
                 self._repository, now_ns=time.time_ns(), stale_after_days=self._stale_after_days
             )
             self._read_s = time.monotonic()
-            self._pause_s = max(SHORTEST_PAUSE_S, SHARE * (self._read_s - now_s))
+            self._pause_s = min(max(SHORTEST_PAUSE_S, SHARE * (self._read_s - now_s)), LONGEST_PAUSE_S)
         self._counted, self._stamps = counted, stamps
         return state

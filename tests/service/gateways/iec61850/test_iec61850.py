@@ -6,7 +6,7 @@ import os
 import signal
 import socket
 from collections.abc import Iterator
-from contextlib import ExitStack, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -22,12 +22,15 @@ from mms import GOOD, Client, FunctionalConstraint, MmsError, Timestamp, Validit
 from mms import Quality as MmsQuality
 from mms.values import BitString
 from service.configuration.gateways.iec61850 import Iec61850Settings
+from service.gateways.iec61850.gateway import PlantIed
 from service.gateways.iec61850.logical_devices import LONGEST, logical_devices
+from service.gateways.plant_state.figures import PlantChange, PlantState
+from service.gateways.plant_state.reading import read_plant_state
 from service.recording_store.folder import FolderStore
 from service.storage import Repository
 from service.storage.records import AlarmPlace, AlarmSpec
 from service.storage.states import AlarmKind, LinkState
-from testing.ports import LOOPBACK
+from testing.ports import LOOPBACK, free_port
 from testing.service.conditions import DRIFTING, FAULT, HEALTHY, UNKNOWN, tell
 from testing.service.gateways import running_gateways
 from testing.service.job_runner import register_runner
@@ -260,6 +263,31 @@ def test_a_gateway_that_is_killed_is_back_with_the_right_values(
         assert eventually(lambda: health() == 3)
 
 
+def test_a_motor_that_gets_another_relay_has_its_name_plate(repository: Repository, tmp_path: Path) -> None:
+    plant = two_motor_plant()
+    other = replace(plant.relays[1], manufacturer="ACME", type="M1")
+    motors = [replace(one, relay=other.name) for one in plant.motors]
+    before = read_plant_state(repository, now_ns=NOW_NS, stale_after_days=None)
+    repository.sync_plant(replace(plant, relays=(plant.relays[0], other), motors=tuple(motors)))
+    now = read_plant_state(repository, now_ns=NOW_NS, stale_after_days=None)
+    settings = Iec61850Settings(port=free_port())
+    with closing_ied(PlantIed(settings, tmp_path)) as ied:
+        ied.tell(PlantChange(PlantState(), before))
+        with Client.connect(LOOPBACK, settings.port) as client:
+            plate = f"{PUMP}/LPHD1.PhyNam.vendor"
+            assert client.read(plate, FunctionalConstraint.DC) == plant.relays[0].manufacturer
+            ied.tell(PlantChange(before, now))
+            assert client.read(plate, FunctionalConstraint.DC) == "ACME"
+
+
+@contextmanager
+def closing_ied(ied: PlantIed) -> Iterator[PlantIed]:
+    try:
+        yield ied
+    finally:
+        ied.stop()
+
+
 def test_a_password_is_asked_for(repository: Repository, tmp_path: Path) -> None:
     secret = tmp_path / "password"
     secret.write_text("open sesame\n", encoding="ascii")
@@ -275,6 +303,8 @@ def test_a_password_is_asked_for(repository: Repository, tmp_path: Path) -> None
 def test_beyond_loopback_somebody_decides_who_may_read() -> None:
     with pytest.raises(ValueError, match="open_to_all"):
         Iec61850Settings.model_validate({"bind_address": "0.0.0.0"})  # noqa: S104 - refused
+    with pytest.raises(ValueError, match="open_to_all"):  # a password alone can be read on its way
+        Iec61850Settings.model_validate({"bind_address": "0.0.0.0", "password_file": "/etc/password"})  # noqa: S104
     assert Iec61850Settings.model_validate({"bind_address": "0.0.0.0", "open_to_all": True})  # noqa: S104
 
 

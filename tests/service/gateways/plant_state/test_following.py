@@ -24,12 +24,16 @@ from testing.service.plants import NOW_NS
 from testing.waiting import wait_until
 
 
+SILENCE_S = 4.0
+"""Longer than a reading on a machine that does much else."""
+
+
 @pytest.fixture
 def follower(repository: Repository, monkeypatch: pytest.MonkeyPatch) -> Iterator[PlantFollower]:
     monkeypatch.setattr("service.gateways.plant_state.following.SHORTEST_PAUSE_S", 0.0)
     monkeypatch.setattr("service.gateways.plant_state.following.SHARE", 0)
     monkeypatch.setattr("service.gateways.plant_state.following.time.time_ns", lambda: NOW_NS)
-    follower = PlantFollower(repository, period_s=0.01, silence_s=1.0)
+    follower = PlantFollower(repository, period_s=0.01, silence_s=SILENCE_S)
     yield follower
     follower.close()
 
@@ -208,6 +212,42 @@ def test_a_clock_that_jumps_makes_values_old_and_good_again_and_stops_nothing(
         tell(repository, FAULT)
         wait_until(lambda: next_change(follower).now.motors["PUMP-A1"].state is State.FAULT)
         assert follower.problem is None
+    finally:
+        follower.close()
+
+
+def test_what_has_changed_and_is_not_read_in_time_is_not_good(
+    repository: Repository, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The database answers how many changes there were; the pause after a reading is not over."""
+    monkeypatch.setattr("service.gateways.plant_state.following.SHORTEST_PAUSE_S", 3 * SILENCE_S)
+    monkeypatch.setattr("service.gateways.plant_state.following.time.time_ns", lambda: NOW_NS)
+    tell(repository, HEALTHY)
+    follower = PlantFollower(repository, period_s=0.01, silence_s=SILENCE_S)
+    try:
+        assert next_change(follower).now.motors["PUMP-A1"].quality is Quality.GOOD
+        tell(repository, FAULT)
+        seen = [next_change(follower).now.motors["PUMP-A1"] for _ in range(2)]
+        assert [(one.state, one.quality) for one in seen] == [
+            (State.HEALTHY, Quality.UNCERTAIN),
+            (State.FAULT, Quality.GOOD),
+        ]
+    finally:
+        follower.close()
+
+
+def test_the_pause_after_a_slow_reading_has_an_end(
+    repository: Repository, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("service.gateways.plant_state.following.SHARE", 10**9)
+    monkeypatch.setattr("service.gateways.plant_state.following.LONGEST_PAUSE_S", 0.2)
+    monkeypatch.setattr("service.gateways.plant_state.following.time.time_ns", lambda: NOW_NS)
+    tell(repository, HEALTHY)
+    follower = PlantFollower(repository, period_s=0.01)
+    try:
+        assert next_change(follower).now.motors["PUMP-A1"].state is State.HEALTHY
+        tell(repository, FAULT)
+        assert next_change(follower).now.motors["PUMP-A1"].state is State.FAULT
     finally:
         follower.close()
 
