@@ -4,6 +4,7 @@ import base64
 import csv
 import io
 import posixpath
+import re
 import shutil
 import struct
 import subprocess
@@ -96,6 +97,23 @@ def test_a_workbook_with_queries(client: httpx.Client, tmp_path: Path) -> None:
     assert formulas.count("shared ") == 3
     assert "Bearer " in formulas
     assert all(f'"{name}"' in formulas for name in told)
+
+
+def test_grafana_gets_the_columns_that_its_page_names(client: httpx.Client) -> None:
+    page = (ROOT / "docs/how-to/monitoring.md").read_text(encoding="utf-8")
+    section = page.partition("### Grafana on the REST API")[2].partition("\n## ")[0]
+    (url,) = re.findall(r"^    (/api/v1/\S+)$", section, re.MULTILINE)
+    named = re.findall(r"^\| `(\w+)` \| (?:Time|Number) \|", section, re.MULTILINE)
+    # Grafana's variables are the ends of the panel's time, as JavaScript writes a date.
+    for variable, date in (("from", "2025-10-09T08:53:00.000Z"), ("to", "2025-10-09T09:00:00.000Z")):
+        url = url.replace(f"${{__{variable}:date:iso}}", date)
+    told = client.get(url, headers={"Authorization": f"Bearer {token_of(client)}"}).raise_for_status()
+    (row,) = csv.DictReader(io.StringIO(told.text))
+    assert len(named) == 4
+    assert set(named) <= row.keys()
+    assert float(row["mu_f"]) == pytest.approx(0.02)
+    (other,) = re.findall(r"`(/api/v1/motors\S+)`", section)
+    assert {one["name"] for one in client.get(other).raise_for_status().json()["items"]} >= {"PUMP-A1"}
 
 
 def read_rows(text: str) -> list[str]:
