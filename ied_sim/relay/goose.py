@@ -123,7 +123,7 @@ def _published(block: GooseBlock) -> PublishedBlock:
         configuration_revision=control.configuration_revision,
         destination=address.mac,
         application_id=address.application_id,
-        vlan_id=address.vlan_id or None,
+        vlan_id=address.vlan_id,
         vlan_priority=address.vlan_priority,
         **times,
     )

@@ -31,7 +31,8 @@ class GooseFrame:
     message : GooseMessage
         The message.
     vlan_id : int or None
-        Virtual LAN; None without a tag. Linux takes the tag away before a socket sees the frame.
+        Virtual LAN; 0 for a tag with the priority alone, None without a tag. Linux takes the tag away before
+        a socket of one Ethertype sees the frame.
     vlan_priority : int
         Priority in the virtual LAN, 0 to 7.
     simulated : bool

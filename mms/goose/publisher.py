@@ -35,7 +35,7 @@ class PublishedBlock:
     application_id : int
         APPID.
     vlan_id : int or None
-        Virtual LAN; None to send without a tag.
+        Virtual LAN; 0 for a tag with the priority alone (IEC 61850-8-1), None to send without a tag.
     vlan_priority : int
         Priority in the virtual LAN.
     minimum_time_ms : int

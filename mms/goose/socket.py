@@ -82,7 +82,8 @@ class RawSocket:
         Returns
         -------
         bytes
-            The frame. A tag of a virtual LAN is gone: Linux takes it away.
+            The frame. A tag of a virtual LAN is gone: Linux takes it away, and tells it only to sockets of
+            all Ethertypes (PACKET_AUXDATA). Where it leaves one, `decode_frame` reads it.
 
         Raises
         ------

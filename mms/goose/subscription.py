@@ -4,6 +4,10 @@ A message counts if it is of the block as configured and tells the same state ag
 count up (stNum), and so do the tellings of a state (sqNum); both go on with 1 after 4294967295. What tells
 an earlier state is a replay, as long as the publisher is alive. Where its time has run out, it may have begun
 anew with lower numbers: then any state is taken, as a first one.
+
+Nothing is signed, so a forged state far ahead makes replays of all that the publisher tells. No state lives
+for longer than its block's configuration allows (`SubscribedBlock.longest_life_s`). Where somebody keeps it
+alive, what is ignored is followed too: other states that are told for longer than that, in order, count.
 """
 
 from dataclasses import dataclass
@@ -12,8 +16,16 @@ from enum import Enum
 from mms.goose.frame import GooseFrame
 from mms.goose.message import HIGHEST_NUMBER, GooseMessage
 
-LONGEST_LIFE_S = 600.0
-"""A publisher that promises no message for longer is taken for silent after this."""
+MAXIMUM_TIMES = 4
+"""A state lives for so many of its block's longest intervals (MaxTime) at most; publishers promise 2 or 3."""
+SHORTEST_CAP_S = 2.0
+"""No state's life is capped to less: a busy network may be late."""
+UNSAID_CAP_S = 60.0
+"""It lives for so long at most where the configuration says nothing."""
+LONGEST_CAP_S = 600.0
+"""It lives for no longer than this, whatever the configuration says."""
+DISPUTING = 2
+"""So many messages of other states within a life are a dispute. One may be a frame that was late."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +48,8 @@ class SubscribedBlock:
         Multicast address, six octets.
     application_id : int
         APPID.
+    maximum_time_ms : int or None
+        Longest interval between its messages [ms] (MaxTime); None or 0 where it is not said.
     """
 
     reference: str
@@ -45,15 +59,24 @@ class SubscribedBlock:
     entries: int
     destination: bytes
     application_id: int
+    maximum_time_ms: int | None = None
+
+    @property
+    def longest_life_s(self) -> float:
+        """So long a state lives at most [s], whatever its message allows."""
+        if not self.maximum_time_ms:
+            return UNSAID_CAP_S
+        return min(max(MAXIMUM_TIMES * self.maximum_time_ms / 1000, SHORTEST_CAP_S), LONGEST_CAP_S)
 
 
 class Reception(Enum):
-    """What was made of a frame. The first four count, the others are ignored."""
+    """What was made of a frame. The first five count, the others are ignored."""
 
     FIRST = "first state"
     CHANGED = "later state"
     REPEATED = "same state again"
     RESUMED = "first state after silence"
+    BEGUN_ANEW = "a state that was told for long beside a later one"
     REPLAYED = "an earlier state or telling again"
     CONTRADICTORY = "another content of the same state"
     WRONG_ADDRESS = "another APPID or destination than configured"
@@ -69,7 +92,22 @@ class Reception(Enum):
         return self in _COUNTING
 
 
-_COUNTING = {Reception.FIRST, Reception.CHANGED, Reception.REPEATED, Reception.RESUMED}
+_COUNTING = {
+    Reception.FIRST,
+    Reception.CHANGED,
+    Reception.REPEATED,
+    Reception.RESUMED,
+    Reception.BEGUN_ANEW,
+}
+
+
+@dataclass(slots=True)
+class _Rival:
+    """Messages that are ignored, though each goes on from the one before: the publisher may tell them."""
+
+    latest: GooseMessage
+    began_s: float
+    latest_s: float
 
 
 class Subscription:
@@ -87,6 +125,9 @@ class Subscription:
         self.block = block
         self._accept_simulated = accept_simulated
         self._ends_s: float | None = None
+        self._rival: _Rival | None = None
+        self._disputed_s: list[float] = []
+        """When the latest messages of other states were ignored."""
         self.latest: GooseMessage | None = None
         """The latest message that counted."""
         self.missed_states = 0
@@ -100,6 +141,11 @@ class Subscription:
     def is_alive(self) -> bool:
         """Whether the publisher has told its state within the time it allowed."""
         return self._ends_s is not None
+
+    @property
+    def is_disputed(self) -> bool:
+        """Whether messages of the block tell another state than the one that counts, and are ignored."""
+        return len(self._disputed_s) >= DISPUTING
 
     def receive(self, frame: GooseFrame, now_s: float) -> Reception:
         """Take a frame with the block's reference.
@@ -118,13 +164,18 @@ class Subscription:
         """
         self.expire(now_s)
         made = self._mismatch(frame) or self._judged(frame.message)
+        if made in (Reception.REPLAYED, Reception.CONTRADICTORY) and self._disputes(frame.message, now_s):
+            made = Reception.BEGUN_ANEW
         if not made.counts:
             self.ignored[made] = self.ignored.get(made, 0) + 1
             return made
         if made is Reception.CHANGED and self.latest is not None:
             self.missed_states += ahead(self.latest.state_number, frame.message.state_number) - 1
         self.latest = frame.message
-        self._ends_s = now_s + min(frame.message.time_allowed_to_live_ms / 1000, LONGEST_LIFE_S)
+        allowed_s = frame.message.time_allowed_to_live_ms / 1000
+        self._ends_s = now_s + min(allowed_s, self.block.longest_life_s)
+        if made is not Reception.REPEATED and made is not Reception.CHANGED:
+            self._rival = None
         return made
 
     def expire(self, now_s: float) -> bool:
@@ -140,11 +191,32 @@ class Subscription:
         bool
             True once, where its time has run out since it was last seen alive.
         """
+        begins_s = now_s - self.block.longest_life_s
+        self._disputed_s = [ignored_s for ignored_s in self._disputed_s if ignored_s >= begins_s]
+        if self._rival is not None and self._rival.latest_s < begins_s:
+            self._rival = None
         if self._ends_s is None or now_s <= self._ends_s:
             return False
         self._ends_s = None
         self.lost += 1
         return True
+
+    def _disputes(self, message: GooseMessage, now_s: float) -> bool:
+        """Take a message that is an old one or contradicts; tell whether it has been so for too long.
+
+        A duplicate of the latest state, as redundant networks make them, tells nothing else than that.
+        """
+        if self.latest is not None and _tell_same(self.latest, message):
+            return False
+        self._disputed_s = [*self._disputed_s[1 - DISPUTING :], now_s]
+        rival = self._rival
+        if rival is None:
+            self._rival = _Rival(message, now_s, now_s)
+            return False
+        if not _goes_on(rival.latest, message):
+            return False
+        rival.latest, rival.latest_s = message, now_s
+        return now_s - rival.began_s > self.block.longest_life_s
 
     def _mismatch(self, frame: GooseFrame) -> Reception | None:
         """Return why a frame is not what the configuration says; None where it is."""
@@ -171,11 +243,22 @@ class Subscription:
         if message.state_number == latest.state_number:
             if ahead(latest.sequence_number, message.sequence_number) <= 0:
                 return Reception.REPLAYED
-            is_same = (message.time, message.values) == (latest.time, latest.values)
-            return Reception.REPEATED if is_same else Reception.CONTRADICTORY
+            return Reception.REPEATED if _tell_same(latest, message) else Reception.CONTRADICTORY
         if ahead(latest.state_number, message.state_number) <= 0:
             return Reception.REPLAYED
         return Reception.CHANGED
+
+
+def _tell_same(one: GooseMessage, other: GooseMessage) -> bool:
+    """Tell whether two messages are tellings of one state."""
+    return (one.state_number, one.time, one.values) == (other.state_number, other.time, other.values)
+
+
+def _goes_on(before: GooseMessage, after: GooseMessage) -> bool:
+    """Tell whether a message may be the publisher's next one after another: neither number falls."""
+    if before.state_number != after.state_number:
+        return ahead(before.state_number, after.state_number) > 0
+    return _tell_same(before, after) and ahead(before.sequence_number, after.sequence_number) > 0
 
 
 def ahead(before: int, after: int) -> int:

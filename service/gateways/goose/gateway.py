@@ -14,7 +14,8 @@ from service.configuration.gateways.goose import GooseSettings
 from service.configuration.settings import Settings
 from service.gateways.context import GatewayContext
 from service.gateways.goose.listener import SignalChange
-from service.gateways.goose.receiver import LOOK_S, PendingChanges, Receiver
+from service.gateways.goose.pending import PendingChanges
+from service.gateways.goose.receiver import LOOK_S, Receiver
 from service.gateways.goose.signals import Meaning, SignalError, WatchedBlock, watched_blocks
 from service.storage import NotFoundError, Repository, StorageError
 from service.storage.records import Actor, AlarmPlace, AlarmSpec
@@ -35,7 +36,7 @@ def run(context: GatewayContext) -> None:
     blocks = _watched_blocks(context, chosen)
     if not blocks:
         return
-    changes = PendingChanges()
+    changes = PendingChanges(blocks)
     receiver = Receiver(chosen, blocks, changes, context.stop)
     receiver.start()
     try:
@@ -77,7 +78,7 @@ def _write_changes(context: GatewayContext, receiver: Receiver, changes: Pending
     while not context.stop.is_set():
         error = receiver.error  # looked at first: all that it had heard waits by then
         change = changes.wait_for_next(LOOK_S)
-        if change is None and error is not None:
+        if change is None and error is not None and changes.is_empty:
             raise error
         key = uuid4().hex
         while change is not None and not context.stop.is_set():
@@ -87,7 +88,8 @@ def _write_changes(context: GatewayContext, receiver: Receiver, changes: Pending
             except SQLAlchemyError as error:
                 context.tell(database_trouble(error))
                 context.stop.wait(RETRY_S)
-        context.tell(receiver.problem)
+        problems = [problem for problem in (receiver.problem, changes.problem) if problem is not None]
+        context.tell("; ".join(problems) or None)
 
 
 class SignalWriter:

@@ -11,12 +11,15 @@ from service.gateways.goose.signals import Meaning, Signal, WatchedBlock
 log = structlog.get_logger(__name__)
 
 MOST_NAMED = 3
+MISSED_S = 60.0
+"""Missed states of a control block are told so often at most: whoever makes them up writes no log."""
 
 
 @dataclass(frozen=True, slots=True)
 class SignalChange:
-    """A signal is on or off, since `time_ns` by its sender's clock."""
+    """A signal is on or off, since `time_ns` by its sender's clock. block: reference of what sends it."""
 
+    block: str
     signal: Signal
     is_on: bool
     time_ns: int
@@ -28,6 +31,9 @@ class _Watched:
     subscription: Subscription
     values: dict[Signal, bool] = field(default_factory=dict)
     """The latest value of each signal that could be used."""
+    missed_told: int = 0
+    missed_told_s: float | None = None
+    """When missed states were logged last; None for never."""
 
 
 class GooseListener:
@@ -63,19 +69,24 @@ class GooseListener:
     @property
     def problem(self) -> str | None:
         """Return which control blocks are not heard as they are configured; None where all are."""
-        silent = [
-            f"{reference}{_ignored(watched.subscription)}"
-            for reference, watched in self._watched.items()
-            if not watched.subscription.is_alive
-        ]
-        if not silent:
-            return None
-        named = ", ".join(silent[:MOST_NAMED])
-        more = f" and {len(silent) - MOST_NAMED} more" if len(silent) > MOST_NAMED else ""
-        return f"{len(silent)} of {len(self._watched)} GOOSE control blocks are not heard: {named}{more}"
+        silent, disputed = [], []
+        for reference, watched in self._watched.items():
+            if not watched.subscription.is_alive:
+                silent.append(f"{reference}{_ignored(watched.subscription)}")
+            elif watched.subscription.is_disputed:
+                disputed.append(reference)
+        count = len(self._watched)
+        problems = []
+        if silent:
+            problems.append(f"{len(silent)} of {count} GOOSE control blocks are not heard: {named(silent)}")
+        if disputed:
+            problems.append(
+                f"{len(disputed)} of {count} GOOSE control blocks are told in two states at once, and one of "
+                f"them is ignored as a replay: {named(disputed)}"
+            )
+        return "; ".join(problems) or None
 
     def _taken(self, watched: _Watched, frame: GooseFrame, now_s: float) -> Iterator[SignalChange]:
-        missed = watched.subscription.missed_states
         made = watched.subscription.receive(frame, now_s)
         if not made.counts:
             if watched.subscription.ignored[made] == 1:
@@ -83,9 +94,11 @@ class GooseListener:
             return
         if made is Reception.REPEATED:
             return
-        missed = watched.subscription.missed_states - missed
-        if missed:
-            log.warning("GOOSE states were missed", block=frame.message.control_block, states=missed)
+        _tell_missed(watched, now_s)
+        if made is Reception.BEGUN_ANEW:
+            log.warning(
+                "a GOOSE control block is told in two states at once", block=frame.message.control_block
+            )
         for signal in watched.block.signals:
             is_on = signal.value(frame.message.values)
             if is_on is None or watched.values.get(signal) is is_on:
@@ -95,7 +108,21 @@ class GooseListener:
             # A trip may have been told before this one listened. What asks for a record is over by then.
             if is_first and signal.meaning is Meaning.TRIGGER and not _is_new(frame):
                 continue
-            yield SignalChange(signal, is_on, frame.message.time.ns)
+            yield SignalChange(frame.message.control_block, signal, is_on, frame.message.time.ns)
+
+
+def named(references: Sequence[str]) -> str:
+    """Return the first few, and how many more there are."""
+    more = f" and {len(references) - MOST_NAMED} more" if len(references) > MOST_NAMED else ""
+    return ", ".join(references[:MOST_NAMED]) + more
+
+
+def _tell_missed(watched: _Watched, now_s: float) -> None:
+    """Log how many states were missed since that was logged last, if that is long enough ago."""
+    missed = watched.subscription.missed_states - watched.missed_told
+    if missed and (watched.missed_told_s is None or now_s - watched.missed_told_s >= MISSED_S):
+        log.warning("GOOSE states were missed", block=watched.block.subscribed.reference, states=missed)
+        watched.missed_told, watched.missed_told_s = watched.subscription.missed_states, now_s
 
 
 def _is_new(frame: GooseFrame) -> bool:

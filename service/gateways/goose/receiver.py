@@ -3,15 +3,16 @@
 import time
 from collections.abc import Sequence
 from contextlib import suppress
-from threading import Condition, Event, Thread
+from threading import Event, Thread
 from typing import Final
 
 import structlog
 
 from mms.goose import RawSocket, RawSocketError
 from service.configuration.gateways.goose import GooseSettings
-from service.gateways.goose.listener import GooseListener, SignalChange
-from service.gateways.goose.signals import Signal, WatchedBlock, destinations
+from service.gateways.goose.listener import GooseListener
+from service.gateways.goose.pending import PendingChanges
+from service.gateways.goose.signals import WatchedBlock, destinations
 
 log = structlog.get_logger(__name__)
 
@@ -19,35 +20,6 @@ LOOK_S: Final = 0.5
 """Longest wait for a frame or a change before it is seen whether the service is gone."""
 REOPEN_S: Final = 5.0
 """Between attempts to have the socket."""
-
-
-class PendingChanges:
-    """Changes of signals that wait for the database.
-
-    The latest rise and the latest fall of each signal are kept, in their order. So nothing grows while the
-    database is silent, no trip is lost, and the last state is that of the relay. A signal that rises several
-    times meanwhile asks for one record.
-    """
-
-    def __init__(self) -> None:
-        self._changed = Condition()
-        self._changes: dict[tuple[Signal, bool], SignalChange] = {}
-
-    def add(self, change: SignalChange) -> None:
-        """Put a change behind the others."""
-        key = change.signal, change.is_on
-        with self._changed:
-            self._changes.pop(key, None)
-            self._changes[key] = change
-            self._changed.notify()
-
-    def wait_for_next(self, longest_s: float) -> SignalChange | None:
-        """Take the next change; None where there was none for so long."""
-        with self._changed:
-            if not self._changes:
-                self._changed.wait(longest_s)
-            key = next(iter(self._changes), None)
-            return None if key is None else self._changes.pop(key)
 
 
 class Receiver:

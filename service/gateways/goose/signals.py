@@ -195,6 +195,7 @@ def _subscribed(block: GooseBlock) -> SubscribedBlock:
         entries=len(block.members),
         destination=address.mac,
         application_id=address.application_id,
+        maximum_time_ms=address.maximum_time_ms,
     )
 
 

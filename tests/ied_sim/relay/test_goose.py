@@ -47,6 +47,19 @@ def test_a_trip_or_a_quality_is_a_new_state_and_a_new_time_alone_is_none(ied: Ie
     assert good_again.time.ns == NOW_NS + 3 * 10**9
 
 
+def test_its_frames_carry_the_tag_with_the_blocks_priority(ied: Ied) -> None:
+    """The SCD says VLAN-ID 000 and VLAN-PRIORITY 4: a tag that asks for priority alone."""
+    sent: Queue[bytes] = Queue()
+    thread = PublisherThread(sent.put)
+    RelayGoose(ied, GooseOutlet(thread, bytes(6)), {}, NOW_NS)
+    thread.start()
+    try:
+        octets = sent.get(timeout=30)
+    finally:
+        thread.stop()
+    assert octets[12:18] == bytes.fromhex("8100800088b8")
+
+
 def message_of(sent: "Queue[bytes]", state: int) -> GooseMessage:
     """The first message of a state."""
     while True:

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mms.goose import GooseFrame, Reception, Subscription
-from mms.goose.subscription import ahead, following
+from mms.goose.subscription import LONGEST_CAP_S, SHORTEST_CAP_S, UNSAID_CAP_S, ahead, following
 from mms.values import Timestamp
 from tests.mms.goose.blocks import BLOCK, NOW_NS, frame, frames
 
@@ -114,6 +114,82 @@ def test_a_publisher_that_begins_anew_is_taken_only_after_its_time_has_run_out(
     assert subscription.receive(anew, 1.9) is Reception.REPLAYED
     assert subscription.receive(anew, 2.1) is Reception.RESUMED
     assert subscription.lost == 1
+
+
+@pytest.mark.parametrize(
+    ("maximum_time_ms", "longest_s"),
+    [
+        (1000, 4.0),
+        (10, SHORTEST_CAP_S),
+        (10**9, LONGEST_CAP_S),
+        (None, UNSAID_CAP_S),
+        (0, UNSAID_CAP_S),
+    ],
+)
+def test_no_state_lives_longer_than_its_block_allows(maximum_time_ms: int | None, longest_s: float) -> None:
+    found = Subscription(replace(BLOCK, maximum_time_ms=maximum_time_ms))
+    found.receive(frame(time_allowed_to_live_ms=HIGHEST), 0.0)
+    assert not found.expire(longest_s)
+    assert found.expire(longest_s + 0.001)
+
+
+def forged(number: int = 0) -> GooseFrame:
+    """A message of a state far ahead, which promises to live for ten minutes."""
+    return frame(state_number=5 + 10**9, sequence_number=number, time_allowed_to_live_ms=600_000)
+
+
+def told_every_second(found: Subscription, forge_every_s: int | None) -> tuple[list[bool], list[float]]:
+    """Forge a state once, or on and on, while the publisher tells its own, and trips after 1.5 s.
+
+    Returns whether it was disputed after each of its messages, and when its trip counted.
+    """
+    assert found.receive(forged(), 0.0).counts
+    is_disputed, counted_s = [], []
+    for second in range(1, 20):
+        if forge_every_s and second % forge_every_s == 0:
+            found.receive(forged(second), second - 0.5)
+        trips = second > 1
+        told = frame(state_number=6 if trips else 5, sequence_number=second, values=(trips,))
+        if found.receive(told, float(second)).counts and trips:
+            counted_s.append(float(second))
+        is_disputed.append(found.is_disputed)
+    return is_disputed, counted_s
+
+
+def test_after_one_forged_state_the_publisher_counts_again_once_the_capped_life_is_over() -> None:
+    found = Subscription(replace(BLOCK, maximum_time_ms=1000))
+    found.receive(frame(), 0.0)
+    is_disputed, counted_s = told_every_second(found, None)
+    assert counted_s == [float(second) for second in range(5, 20)]
+    # It is told from the second ignored message on, until none has been ignored for a life.
+    assert is_disputed == [False, *[True] * 6, *[False] * 12]
+
+
+def test_beside_a_forger_that_goes_on_the_publisher_counts_again_and_again() -> None:
+    found = Subscription(replace(BLOCK, maximum_time_ms=1000))
+    found.receive(frame(), 0.0)
+    is_disputed, counted_s = told_every_second(found, 1)
+    # Its first ignored message came after 1 s; each further time begins with the forger's next message.
+    assert counted_s == [6.0, 12.0, 18.0]
+    assert is_disputed == [False, *[True] * 18]
+
+
+def test_duplicates_of_the_latest_state_are_no_dispute(subscription: Subscription) -> None:
+    """As two paths of a redundant network bring them."""
+    for number in range(1, 40):
+        assert subscription.receive(frame(sequence_number=number), number / 2) is Reception.REPEATED
+        assert subscription.receive(frame(sequence_number=number), number / 2) is Reception.REPLAYED
+        assert not subscription.is_disputed
+
+
+def test_one_frame_told_again_and_again_is_a_dispute_and_never_counts() -> None:
+    found = Subscription(replace(BLOCK, maximum_time_ms=1000))
+    found.receive(frame(), 0.0)
+    for number in range(1, 40):
+        assert found.receive(frame(sequence_number=number), number / 2) is Reception.REPEATED
+        old = frame(state_number=4, values=(True,))
+        assert found.receive(old, number / 2) is Reception.REPLAYED
+    assert found.is_disputed
 
 
 @given(st.integers(0, HIGHEST))

@@ -7,11 +7,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from lxml import etree
+from structlog.testing import capture_logs
 
 import scl
 from mms import BitString, Quality, Timestamp, Validity, Value
 from mms.goose import GooseFrame, GooseMessage, encode_frame
-from mms.goose.subscription import LONGEST_LIFE_S
+from mms.goose.subscription import LONGEST_CAP_S
 from service.configuration.gateways.goose import GooseSettings, GooseTrigger
 from service.gateways.goose.listener import GooseListener
 from service.gateways.goose.signals import Meaning, SignalError, WatchedBlock, watched_blocks
@@ -125,6 +126,34 @@ def test_a_block_that_falls_silent_is_named_with_the_reason(plant: SclAndRelays)
     assert told == [silent, None, f"{silent} (another confRev than configured)"]
 
 
+def test_a_forged_frame_silences_a_trip_for_a_few_seconds_and_is_told_meanwhile(plant: SclAndRelays) -> None:
+    """The SCD says MaxTime 1 s: no state lives for more than 4 s."""
+    listener = GooseListener(blocks(plant)[:1])
+    listener.receive(frame(), 0.0)
+    listener.receive(frame(state_number=10**9, time_allowed_to_live_ms=600_000), 0.1)
+    told_s, problems = [], []
+    for number in range(12):
+        now_s = 0.5 + number
+        told = listener.receive(frame(trip=True, state_number=2, sequence_number=number), now_s)
+        told_s += [now_s for change in told if change.is_on]
+        listener.expire(now_s)
+        problems.append(listener.problem)
+    assert told_s == [4.5]
+    named = (
+        "1 of 1 GOOSE control blocks are told in two states at once, and one of them is ignored as a replay: "
+        f"{MESSAGE.control_block}"
+    )
+    assert problems == [None, *[named] * 6, *[None] * 5]
+
+
+def test_missed_states_are_logged_once_a_minute(plant: SclAndRelays) -> None:
+    listener = GooseListener(blocks(plant)[:1])
+    with capture_logs() as logged:
+        for number in range(100):
+            listener.receive(frame(state_number=1 + 3 * number), number)
+    assert [one["states"] for one in logged if one["event"] == "GOOSE states were missed"] == [2, 120]
+
+
 def test_a_trigger_of_a_relay_without_motors_names_them(plant: SclAndRelays) -> None:
     document, relays = plant
     alone = {motor: relay for motor, relay in relays.items() if relay != "A1_SEL710"}
@@ -186,6 +215,6 @@ def test_garbled_frames_raise_nothing(plant: SclAndRelays, place: int, octet: in
     octets[place % len(octets)] = octet
     listener.receive(bytes(octets[: cut or None]), 0.0)
     # It goes on to hear the relay, once what the frame promised is over.
-    listener.receive(frame(state_number=1), LONGEST_LIFE_S + 1)
-    told = listener.receive(frame(trip=True, state_number=2), LONGEST_LIFE_S + 1)
+    listener.receive(frame(state_number=1), LONGEST_CAP_S + 1)
+    told = listener.receive(frame(trip=True, state_number=2), LONGEST_CAP_S + 1)
     assert [change.is_on for change in told] == [True]

@@ -7,7 +7,6 @@ import json
 import os
 import signal
 import sqlite3
-import subprocess
 import sys
 import time
 from contextlib import closing
@@ -16,7 +15,6 @@ from pathlib import Path
 
 from sqlalchemy import make_url
 
-import scl
 from core.warm_up import warm_up
 from ied_sim.relay.protection import DefiniteTime, ProtectionSettings
 from ied_sim.scenario.scenario import healthy_reference
@@ -24,22 +22,30 @@ from ied_sim.simulator import Simulator
 from mms import BitString, Quality, Timestamp, Value
 from mms.goose import PublishedBlock, Publisher, RawSocket, decode_frame, encode_frame
 from mms.goose.publisher import LIVES
-from scl import Address
 from scl.goose_blocks import GooseBlock, goose_blocks
-from service.alarms.kinds import AlarmKind
 from service.configuration.gateways.goose import GooseSettings, GooseTrigger
 from service.configuration.gateways.modbus import ModbusSettings
 from service.configuration.gateways.settings import GatewaysSettings
 from service.configuration.settings import Settings
-from service.gateways.supervision import PlantGateways, PlantGatewayStatus
+from service.gateways.supervision import PlantGateways
 from service.jobs.worker_pool import WorkerPool
 from service.plant import read_plant
 from service.storage import Repository, connect
-from service.storage.records import Alarm, RecordingRequest
-from testing.ports import LOOPBACK, free_port
+from service.storage.records import RecordingRequest
+from testing.ports import free_port
 from testing.service.database import make_database
 from testing.service.gateways import started_gateways
 from testing.waiting import wait_until
+from tests.service.gateways.goose.on_the_wire import (
+    alarms,
+    all_frames_are_read,
+    goose,
+    ip,
+    make_interfaces,
+    plant_here,
+    problem,
+    tripped,
+)
 from tests.service.gateways.goose.plant import MOTORS
 
 TRIP = "A1_SEL710PRO/TRIPPTRC1.Tr.general"
@@ -55,23 +61,21 @@ LIVES_SHORT_MS, LIVES_LONG_MS = 500, 60_000
 
 def main(directory: Path) -> None:
     """Let a relay trip, kill the gateway, and let another sender tell lies."""
-    for words in ("lo up", "left up", "right up"):
-        if words == "left up":
-            _ip("link add left type veth peer name right")
-        _ip(f"link set {words}")
-    file = directory / "plant.scd"
-    names = [ied.name for ied in scl.read(scl.DEMO_PLANT_SCD).ieds]
-    scl.with_addresses(scl.DEMO_PLANT_SCD, file, {name: Address(LOOPBACK, free_port()) for name in names})
-    document = scl.read(file)
+    make_interfaces()
+    file, patient_file = directory / "plant.scd", directory / "patient.scd"
+    document = plant_here(file)
+    # What is to live through a part of the test does so on a slow machine too.
+    text = file.read_text(encoding="utf-8")
+    patient_file.write_text(text.replace(">1000</MaxTime>", f">{LIVES_LONG_MS}</MaxTime>"), encoding="utf-8")
     (block,), (other_block,), (third_block,), (fourth_block,), (fifth_block,) = (
         goose_blocks(document.ied(f"{name}_SEL710")) for name in ("A1", "A2", "B1", "B2", "B3")
     )
-    goose = GooseSettings(interface="right", triggers=(GooseTrigger(signal=TRIP, motors=("FAN-A2",)),))
+    listening = GooseSettings(interface="right", triggers=(GooseTrigger(signal=TRIP, motors=("FAN-A2",)),))
     settings = Settings(
         data_directory=directory,
         scd=file,
         motors=MOTORS,
-        gateways=GatewaysSettings(goose=goose, modbus=ModbusSettings(port=free_port())),
+        gateways=GatewaysSettings(goose=listening, modbus=ModbusSettings(port=free_port())),
     )
     repository = Repository(connect(make_database(directory)))
     repository.sync_plant(read_plant(settings))
@@ -83,12 +87,13 @@ def main(directory: Path) -> None:
     relays = Simulator(document, {"A1_SEL710": trips}, files=directory / "relays", goose_interface="left")
     with started_gateways(settings) as gateways:
         # It listens before anybody tells: what a trip triggers is over for one that comes later.
-        _problem(gateways, "not heard")
+        problem(gateways, "not heard")
         with relays:
-            wait_until(lambda: _goose(gateways).problem is None, "all relays to be heard")
+            wait_until(lambda: goose(gateways).problem is None, "all relays to be heard")
             _trip(gateways, repository, found)
-    with started_gateways(settings) as gateways, RawSocket("left") as sender:
-        found["silent"] = _problem(gateways, "not heard")
+    patient = settings.model_copy(update={"scd": patient_file})
+    with started_gateways(patient) as gateways, RawSocket("left") as sender:
+        found["silent"] = problem(gateways, "not heard")
         _lie(gateways, sender, block, other_block, repository, found)
         with closing(sqlite3.connect(make_url(settings.database_url).database or "")) as database:
             _trip_while_neither_answers(gateways, sender, third_block, database, repository, found)
@@ -103,13 +108,13 @@ def _trip(gateways: PlantGateways, repository: Repository, found: dict[str, obje
     found["capabilities"] = {one.kind: _capabilities(one.process_id) for one in gateways.status()} | {
         "worker": _of_job_worker()
     }
-    wait_until(lambda: _alarms(repository), "the alarm of the trip")
+    wait_until(lambda: alarms(repository), "the alarm of the trip")
     wait_until(lambda: _requests(repository), "the request that the trip triggers")
-    (alarm,) = _alarms(repository)
+    (alarm,) = alarms(repository)
     found["alarm"] = [alarm.motor, alarm.priority.value, alarm.reason.split(" since ")[0]]
     found["requests"] = [(one.motor, one.origin.value) for one in _requests(repository)]
     _kill(gateways)
-    found["raises after the kill"] = [one.raises for one in _alarms(repository)]
+    found["raises after the kill"] = [one.raises for one in alarms(repository)]
     found["requests after the kill"] = len(_requests(repository))
 
 
@@ -125,21 +130,21 @@ def _lie(
     sender.send(bytes.fromhex("010ccd010000") + bytes(6) + b"\x88\xb8" + os.urandom(200))
     wrong = _Relay(sender, block, GOOD, revision=block.control.configuration_revision + 1)
     reason = "another confRev than configured"
-    wait_until(lambda: wrong.tells() and reason in (_goose(gateways).problem or ""), reason)
-    found["after a wrong revision"] = [reason, len(_alarms(repository))]
+    wait_until(lambda: wrong.tells() and reason in (goose(gateways).problem or ""), reason)
+    found["after a wrong revision"] = [reason, len(alarms(repository))]
 
     bad = _Relay(sender, block, BAD)
     heard = "5 of 6"
-    wait_until(lambda: bad.tells() and heard in (_goose(gateways).problem or ""), "the relay to be heard")
+    wait_until(lambda: bad.tells() and heard in (goose(gateways).problem or ""), "the relay to be heard")
     # What is written after it shows that it was written, if it was.
     other = _Relay(sender, other_block, GOOD, trip=True)
-    wait_until(lambda: other.tells() and "FAN-A2" in _tripped(repository), "the trip of another relay")
-    found["after a bad quality"] = "PUMP-A1" in _tripped(repository)
+    wait_until(lambda: other.tells() and "FAN-A2" in tripped(repository), "the trip of another relay")
+    found["after a bad quality"] = "PUMP-A1" in tripped(repository)
 
     good = _Relay(sender, block, GOOD)
     # A sender that begins anew is one that replays, until it was silent for as long as it promised.
-    wait_until(lambda: good.tells() and "PUMP-A1" not in _tripped(repository), "the alarm to be cleared")
-    found["after the truth"] = _tripped(repository)
+    wait_until(lambda: good.tells() and "PUMP-A1" not in tripped(repository), "the alarm to be cleared")
+    found["after the truth"] = tripped(repository)
 
 
 def _trip_while_neither_answers(
@@ -154,13 +159,13 @@ def _trip_while_neither_answers(
     database.execute("BEGIN IMMEDIATE")
     relay = _Relay(sender, block, GOOD, trip=True)
     assert relay.tells()
-    wait_until(_all_frames_are_read, "the gateway to have the trip")
-    _ip("link set right down")
+    wait_until(all_frames_are_read, "the gateway to have the trip")
+    ip("link set right down")
     database.rollback()
-    wait_until(lambda: len(_alarms(repository)) == 2, "the alarm of the trip")
-    found["while it is down"] = ["CONVEYOR-B1" in _tripped(repository), _problem(gateways, "right: ")]
-    _ip("link set right up")
-    wait_until(lambda: relay.tells() and "5 of 6" in (_goose(gateways).problem or ""), "it to hear again")
+    wait_until(lambda: len(alarms(repository)) == 2, "the alarm of the trip")
+    found["while it is down"] = ["CONVEYOR-B1" in tripped(repository), problem(gateways, "right: ")]
+    ip("link set right up")
+    wait_until(lambda: relay.tells() and "5 of 6" in (goose(gateways).problem or ""), "it to hear again")
 
 
 def _fall_silent(
@@ -169,10 +174,10 @@ def _fall_silent(
     """Trip and say nothing more; then begin anew, with a lower number, as a relay that was switched off."""
     relay = _Relay(sender, block, GOOD, lives_ms=LIVES_SHORT_MS)
     relay.turns(trip=True)
-    wait_until(lambda: "COMPRESSOR-B2" in _tripped(repository), "the trip")
-    _problem(gateways, "6 of 6")
+    wait_until(lambda: "COMPRESSOR-B2" in tripped(repository), "the trip")
+    problem(gateways, "6 of 6")
     anew = _Relay(sender, block, GOOD, lives_ms=LIVES_LONG_MS)
-    wait_until(lambda: anew.tells() and "COMPRESSOR-B2" not in _tripped(repository), "the end of the trip")
+    wait_until(lambda: anew.tells() and "COMPRESSOR-B2" not in tripped(repository), "the end of the trip")
 
 
 def _replay(
@@ -189,21 +194,21 @@ def _replay(
         for octets in frames:
             sender.send(octets)
         # What another relay tells after them shows that they were taken, if they were.
-        trip = "PUMP-B3" not in _tripped(repository)
+        trip = "PUMP-B3" not in tripped(repository)
         other.turns(trip=trip)
-        wait_until(lambda: ("PUMP-B3" in _tripped(repository)) is trip, "the other relay's trip, or its end")
-        return "COMPRESSOR-B2" in _tripped(repository)
+        wait_until(lambda: ("PUMP-B3" in tripped(repository)) is trip, "the other relay's trip, or its end")
+        return "COMPRESSOR-B2" in tripped(repository)
 
     # Its first state is the one that is heard already.
     relay = _Relay(sender, block, GOOD, lives_ms=LIVES_LONG_MS)
-    tripped = relay.turns(trip=True)
+    risen = relay.turns(trip=True)
     found["once it trips"] = is_tripped_after()
     fallen = relay.turns(trip=False)
-    on, number = decode_frame(tripped).message.values, decode_frame(fallen).message.state_number
+    on, number = decode_frame(risen).message.values, decode_frame(fallen).message.state_number
     found["after replays"] = is_tripped_after(
-        tripped, _changed(fallen, values=on), _changed(fallen, values=on, sequence_number=1)
+        risen, _changed(fallen, values=on), _changed(fallen, values=on, sequence_number=1)
     )
-    later = _changed(tripped, state_number=number + 1)
+    later = _changed(risen, state_number=number + 1)
     found["after tests"] = is_tripped_after(
         _changed(later, simulation=True),
         encode_frame(replace(decode_frame(later), simulated=True)),
@@ -222,12 +227,6 @@ def _changed(octets: bytes, **changes: object) -> bytes:
 def _members(block: GooseBlock, quality: BitString, *, trip: bool) -> tuple[Value, ...]:
     member: Value = (trip, quality, Timestamp(time.time_ns()))
     return (member,) * len(block.members)
-
-
-def _all_frames_are_read() -> bool:
-    """Tell whether no frame waits in a socket of this network that hears GOOSE."""
-    sockets = [line.split() for line in Path("/proc/net/packet").read_text().splitlines()[1:]]
-    return all(int(waiting) == 0 for _, _, _, protocol, _, _, waiting, *_ in sockets if protocol == "88b8")
 
 
 class _Relay:
@@ -276,32 +275,14 @@ class _Relay:
         return octets
 
 
-def _goose(gateways: PlantGateways) -> PlantGatewayStatus:
-    return next(one for one in gateways.status() if one.kind == "goose")
-
-
 def _kill(gateways: PlantGateways) -> None:
-    killed = _goose(gateways).process_id
+    killed = goose(gateways).process_id
     assert killed is not None
     os.kill(killed, signal.SIGKILL)
     wait_until(
-        lambda: _goose(gateways).process_id not in (None, killed) and _goose(gateways).problem is None,
+        lambda: goose(gateways).process_id not in (None, killed) and goose(gateways).problem is None,
         "the gateway to be back",
     )
-
-
-def _problem(gateways: PlantGateways, words: str) -> str:
-    wait_until(lambda: words in (_goose(gateways).problem or ""), words)
-    return _goose(gateways).problem or ""
-
-
-def _alarms(repository: Repository) -> list[Alarm]:
-    items = repository.open_alarms(limit=50).items
-    return [one for one in items if one.kind is AlarmKind.MOTOR_TRIPPED and one.cleared_ns is None]
-
-
-def _tripped(repository: Repository) -> list[str | None]:
-    return [alarm.motor for alarm in _alarms(repository)]
 
 
 def _requests(repository: Repository) -> list[RecordingRequest]:
@@ -321,10 +302,6 @@ def _of_job_worker() -> str:
         return pool.schedule(_capabilities, "self", LONGEST_S).result()
     finally:
         pool.stop()
-
-
-def _ip(words: str) -> None:
-    subprocess.run(["ip", *words.split()], check=True)
 
 
 if __name__ == "__main__":
