@@ -18,12 +18,19 @@ from testing.service.gateways import running_gateways
 from testing.waiting import wait_until
 
 
+def is_open(connection: c104.Connection) -> bool:
+    """Return whether data flow. The library now and then loses its own order to begin."""
+    if connection.state == c104.ConnectionState.OPEN_MUTED:
+        connection.unmute()
+    return connection.state == c104.ConnectionState.OPEN
+
+
 class Controlling:
     """A connected client of the library, whose points follow the station's."""
 
     def __init__(self, port: int, motors: int) -> None:
         self._client = c104.Client()
-        connection = self._client.add_connection(ip=LOOPBACK, port=port, init=c104.Init.INTERROGATION)
+        connection = self._client.add_connection(ip=LOOPBACK, port=port, init=c104.Init.NONE)
         assert connection is not None
         station = connection.add_station(common_address=1)
         assert station is not None
@@ -32,6 +39,7 @@ class Controlling:
             for number in range(motors)
         ]
         self._client.start()
+        wait_until(lambda: is_open(connection), "data to flow")
 
     def is_faulty(self, number: int) -> bool:
         """Return what the station said last of a motor."""

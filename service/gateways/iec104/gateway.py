@@ -1,15 +1,12 @@
 """The IEC 60870-5-104 gateway: follows the plant's state and tells changes by themselves."""
 
-import ssl
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
 import structlog
-from cryptography import x509
-from cryptography.hazmat.primitives.serialization import Encoding
 
-from service.configuration.gateways.iec104 import Iec104Settings, Iec104Tls
+from service.configuration.gateways.iec104 import Iec104Settings
 from service.gateways.context import GatewayContext
 from service.gateways.iec104.points import (
     GONE,
@@ -21,6 +18,7 @@ from service.gateways.iec104.points import (
     link_of,
     said_of,
 )
+from service.gateways.iec104.security import Security, TlsFileError
 from service.gateways.iec104.server import StationServer
 from service.gateways.iec104.telegrams import Value
 from service.gateways.kept_file import write_table
@@ -50,6 +48,7 @@ def run(context: GatewayContext) -> None:
             change = follower.next_change(context.stop, longest_s=LOOK_S)
             if change is not None:
                 station.tell(change)
+            station.listen()
             context.tell(station.problem or follower.problem)
     finally:
         station.stop()
@@ -70,34 +69,39 @@ def _made(context: GatewayContext, settings: Iec104Settings) -> "PlantStation | 
     return None
 
 
-class TlsFileError(ValueError):
-    """A file of TLS cannot be used; it says why."""
-
-
 class PlantStation:
     """The station with the points of all motors."""
 
     def __init__(self, settings: Iec104Settings, data_directory: Path) -> None:
         """Raises KeptFileError, TlsFileError."""
-        tls, pinned = (None, frozenset()) if settings.tls is None else _security(settings.tls)
         self._server = StationServer(
             str(settings.bind_address),
             settings.port,
             station=settings.common_address,
             max_connections=settings.max_connections,
-            tls=tls,
-            pinned=pinned,
+            security=None if settings.tls is None else Security.of(settings.tls),
         )
         self._place = f"{settings.bind_address}:{settings.port}"
         self._numbers = MotorNumbers(data_directory / NUMBERS)
         self._map = data_directory / MAP
         self._said: dict[int, Said] = {}
-        self.problem: str | None = "it starts"
+        self._is_known = False
+        self._too_many = 0
+        self._deaf: str | None = "it starts"
+
+    @property
+    def problem(self) -> str | None:
+        """Return what does not work; None while all does."""
+        if self._deaf is not None:
+            return self._deaf
+        if self._too_many:
+            return f"{self._too_many} motors have no addresses: there is room for {MOST_MOTORS}"
+        return None
 
     def tell(self, change: PlantChange) -> None:
-        """Tell what has changed to all who are connected; the first time, begin to listen."""
+        """Tell what has changed to all who are connected."""
         numbers = self._numbers.of(change.now.motors)
-        too_many = [name for name in change.now.motors if numbers[name] >= MOST_MOTORS]
+        self._too_many = sum(numbers[name] >= MOST_MOTORS for name in change.now.motors)
         if change.before.motors.keys() != change.now.motors.keys():
             write_table(self._map, ("motor", "first address"), _map_rows(numbers))
         values: dict[int, Value] = {}
@@ -108,16 +112,19 @@ class PlantStation:
             if numbers[name] < MOST_MOTORS:
                 values |= self._changed(numbers[name], [GONE] * len(KINDS))
         self._server.put(values)
-        if not self._server.is_listening:
-            try:
-                self._server.start()
-            except OSError as error:
-                self.problem = f"{self._place}: {error.strerror}"
-                return
-            log.info("serving IEC 60870-5-104", place=self._place)
-        self.problem = None
-        if too_many:
-            self.problem = f"{len(too_many)} motors have no addresses: there is room for {MOST_MOTORS}"
+        self._is_known = True
+
+    def listen(self) -> None:
+        """Begin to listen as soon as the plant is known; where that cannot be, the next call tries again."""
+        if self._server.is_listening or not self._is_known:
+            return
+        try:
+            self._server.start()
+        except OSError as error:
+            self._deaf = f"{self._place}: {error.strerror or error}"
+            return
+        self._deaf = None
+        log.info("serving IEC 60870-5-104", place=self._place)
 
     def stop(self) -> None:
         """End every connection."""
@@ -136,27 +143,6 @@ class PlantStation:
 
 def _said_of_motor(motor: MotorFigures, state: PlantState) -> list[Said]:
     return [*(said_of(point, motor, state) for point in POINTS), link_of(motor, state)]
-
-
-def _security(tls: Iec104Tls) -> tuple[ssl.SSLContext, frozenset[bytes]]:
-    """Return the server's side of TLS, and the clients that may connect. Raises TlsFileError."""
-    context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
-    context.minimum_version = ssl.TLSVersion.TLSv1_2
-    context.verify_mode = ssl.CERT_REQUIRED
-    named = tls.certificate
-    try:
-        context.load_cert_chain(named, tls.key)
-        named = tls.ca
-        context.load_verify_locations(named)
-        pinned = set()
-        for named in tls.pinned:
-            octets = named.read_bytes()
-            is_text = octets.lstrip().startswith(b"-----BEGIN")
-            load = x509.load_pem_x509_certificate if is_text else x509.load_der_x509_certificate
-            pinned.add(load(octets).public_bytes(Encoding.DER))
-    except (OSError, ValueError) as error:  # that of TLS is one of the system, too
-        raise TlsFileError(f"gateways.iec104.tls: {named}: {error}") from error
-    return context, frozenset(pinned)
 
 
 def _map_rows(numbers: Mapping[str, int]) -> list[tuple[str, int]]:

@@ -5,20 +5,19 @@ such as a clock command that is cut off, and kept from all other work by one tha
 """
 
 import asyncio
-import ssl
 import threading
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Final
 
+from service.gateways.iec104.security import Security
 from service.gateways.iec104.session import Session
 from service.gateways.iec104.telegrams import EVERY_STATION, TEST, Cause, Type, Unit, Value, units_of
 
 WHOLE_STATION: Final = 20
 """Qualifier of an interrogation; those of groups are refused."""
-HANDSHAKE_S: Final = 5.0
-SILENT_S: Final = 5.0
-"""Where there is no room, a connection on which nothing ever came gives way after so long."""
+BEGIN_S: Final = 86_400.0
+"""So long a connection may be without data transfer. The standby of a redundant station has none either."""
 END_S: Final = 10.0
 
 
@@ -33,10 +32,10 @@ class StationServer:
         The common address.
     max_connections
         Of controlling stations at a time.
-    tls
-        Context of the server's side; None without TLS.
-    pinned
-        Certificates (DER) of the clients that may connect; used with `tls`.
+    security
+        None without TLS.
+    begin_within_s
+        Time in which a connection has to begin the data transfer.
     """
 
     def __init__(
@@ -46,14 +45,14 @@ class StationServer:
         *,
         station: int,
         max_connections: int,
-        tls: ssl.SSLContext | None = None,
-        pinned: frozenset[bytes] = frozenset(),
+        security: Security | None = None,
+        begin_within_s: float = BEGIN_S,
     ) -> None:
         self._host, self._port = host, port
         self._station = station
         self._max_connections = max_connections
-        self._tls = tls
-        self._pinned = pinned
+        self._security = security
+        self._begin_within_s = begin_within_s
         self._loop = asyncio.new_event_loop()
         self._thread = threading.Thread(target=self._loop.run_forever, name="IEC 104", daemon=True)
         self._values: dict[int, Value] = {}
@@ -95,35 +94,38 @@ class StationServer:
             session.tell(told)
 
     async def _listening(self) -> asyncio.Server:
-        return await self._loop.create_server(
-            lambda: Session(self._answers, on_open=self._opened, on_close=self._sessions.discard),
-            self._host,
-            self._port,
-            ssl=self._tls,
-            ssl_handshake_timeout=None if self._tls is None else HANDSHAKE_S,
+        return await self._loop.create_server(self._new_session, self._host, self._port)
+
+    def _new_session(self) -> Session:
+        return Session(
+            self._answers,
+            on_open=self._opened,
+            on_close=self._sessions.discard,
+            security=self._security,
+            begin_within_s=self._begin_within_s,
         )
 
     async def _end(self) -> None:
         if self._server is not None:
             self._server.close()
-        for session in list(self._sessions):
+        ended = list(self._sessions)
+        for session in ended:
             session.end("the gateway ends")
+        await asyncio.gather(*(one.securing for one in ended if one.securing is not None))
         await asyncio.sleep(0)
 
     def _opened(self, session: Session) -> bool:
-        """Tell whether a connection may stay."""
-        if self._tls is not None and session.transport is not None:
-            secured = session.transport.get_extra_info("ssl_object")
-            if secured is None or secured.getpeercert(binary_form=True) not in self._pinned:
-                return False
+        """Tell whether there is a place for a connection. One that transfers no data gives way to it.
+
+        Those in a handshake of TLS do so first, and the oldest of them: who means it has begun by then.
+        """
         if len(self._sessions) >= self._max_connections:
-            before_s = self._loop.time() - SILENT_S
-            silent = [one for one in self._sessions if not one.has_spoken and one.opened_s < before_s]
-            if not silent:
+            idle = [one for one in self._sessions if not one.is_started]
+            if not idle:
                 return False
-            longest = min(silent, key=lambda one: one.opened_s)
-            self._sessions.discard(longest)
-            longest.end("it has said nothing, and another one wants its place")
+            oldest = min(idle, key=lambda one: (one.is_secured, one.waiting_since_s))
+            self._sessions.discard(oldest)
+            oldest.end("it transfers no data, and another one wants its place")
         self._sessions.add(session)
         return True
 

@@ -7,6 +7,7 @@ from typing import Final
 
 import structlog
 
+from service.gateways.iec104.security import Security
 from service.gateways.iec104.telegrams import (
     Control,
     MalformedError,
@@ -39,7 +40,10 @@ Answer = Callable[[Unit], Iterable[Unit]]
 
 
 class Session(asyncio.Protocol):
-    """One connection. `on_open` may refuse it: it is closed at once then."""
+    """One connection. `on_open` may refuse it: it is closed at once then.
+
+    security: None without TLS.  begin_within_s: time in which the data transfer has to begin.
+    """
 
     def __init__(
         self,
@@ -47,10 +51,14 @@ class Session(asyncio.Protocol):
         *,
         on_open: Callable[["Session"], bool],
         on_close: Callable[["Session"], None],
+        security: Security | None,
+        begin_within_s: float,
     ) -> None:
         self._answer = answer
         self._on_open = on_open
         self._on_close = on_close
+        self._security = security
+        self._begin_within_s = begin_within_s
         self._loop = asyncio.get_running_loop()
         self._buffer = bytearray()
         self._waiting: deque[bytes] = deque()
@@ -60,19 +68,21 @@ class Session(asyncio.Protocol):
         self._tested_s: float | None = None
         self._timer: asyncio.TimerHandle | None = None
         self.transport: asyncio.Transport | None = None
+        self.securing: asyncio.Task[None] | None = None
+        self.is_secured = security is None
         self.is_started = False
-        self.opened_s = self._loop.time()
-        self.has_spoken = False
+        self.waiting_since_s = self._loop.time()
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         """Begin; nothing is told before the other side asks for it."""
         assert isinstance(transport, asyncio.Transport)  # noqa: S101 - of a TCP server
         self.transport = transport
-        self._received_s = self._loop.time()
-        if self._on_open(self):
-            self._timer = self._loop.call_later(LOOK_S, self._look)
-        else:
+        if not self._on_open(self):
             transport.abort()
+        elif self._security is None:
+            self._begin()
+        else:
+            self.securing = self._loop.create_task(self._secure(transport, self._security))
 
     def connection_lost(self, exc: Exception | None) -> None:
         """Forget what was to be sent."""
@@ -95,14 +105,10 @@ class Session(asyncio.Protocol):
 
     def data_received(self, data: bytes) -> None:
         """Answer what has come; end the connection where it is none of the protocol."""
-        self.has_spoken = True
         self._received_s = self._loop.time()
         self._buffer += data
-        try:
-            for frame in frames(self._buffer):
-                self._take(frame)
-        except MalformedError as error:
-            self.end(str(error))
+        if self.is_secured:
+            self._take_frames()
 
     def tell(self, units: Iterable[Unit]) -> None:
         """Send these, or keep them until the other side has acknowledged others."""
@@ -120,6 +126,27 @@ class Session(asyncio.Protocol):
             log.warning("a connection is ended", client=str(peer), reason=reason)
             self.transport.abort()
 
+    async def _secure(self, transport: asyncio.Transport, security: Security) -> None:
+        """Begin behind the handshake of TLS; nothing that came with it is heard before."""
+        secured = await security.secured(transport, self)
+        if secured is None:
+            self._on_close(self)  # nobody else tells it of a connection that ends in the handshake
+            return
+        self.transport, self.is_secured = secured, True
+        self._begin()
+        self._take_frames()
+
+    def _begin(self) -> None:
+        self._received_s = self.waiting_since_s = self._loop.time()
+        self._timer = self._loop.call_later(LOOK_S, self._look)
+
+    def _take_frames(self) -> None:
+        try:
+            for frame in frames(self._buffer):
+                self._take(frame)
+        except MalformedError as error:
+            self.end(str(error))
+
     def _take(self, frame: bytes) -> None:
         """Raises MalformedError."""
         control = frame[0]
@@ -134,6 +161,7 @@ class Session(asyncio.Protocol):
             self._write(unnumbered(Control.START_CONFIRMATION))
         elif control == Control.STOP_ACTIVATION:
             self.is_started = False
+            self.waiting_since_s = self._loop.time()
             self._waiting.clear()
             self._owe_nothing()
             self._write(unnumbered(Control.STOP_CONFIRMATION))
@@ -194,6 +222,8 @@ class Session(asyncio.Protocol):
             self.end(f"nothing sent was acknowledged for {ANSWER_S:g} s")
         elif self._tested_s is not None and now_s - self._tested_s > ANSWER_S:
             self.end(f"a test was not answered within {ANSWER_S:g} s")
+        elif not self.is_started and now_s - self.waiting_since_s > self._begin_within_s:
+            self.end(f"it did not begin the data transfer within {self._begin_within_s:g} s")
         elif self._tested_s is None and now_s - self._received_s > IDLE_S:
             self._tested_s = now_s
             self._write(unnumbered(Control.TEST_ACTIVATION))

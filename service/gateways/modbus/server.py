@@ -1,21 +1,23 @@
 """The Modbus server: it reads registers out, for a bounded number of clients, and lets nobody write."""
 
-import asyncio
-from collections.abc import Callable, Mapping, Sequence
-from ipaddress import ip_address
+from collections.abc import Mapping, Sequence
+from typing import Final
 
 from pymodbus.constants import ExcCodes
 from pymodbus.datastore import ModbusServerContext
 from pymodbus.pdu import DecodePDU, ExceptionResponse, ModbusPDU
 from pymodbus.server import ModbusTcpServer
-from pymodbus.server.requesthandler import ServerRequestHandler
 from pymodbus.simulator import DataType, SimData, SimDevice
 
 from service.configuration.gateways.modbus import ModbusSettings
+from service.gateways.modbus.connection import Connection
 from service.gateways.modbus.register_map import FIRST_BLOCK, MOST_MOTORS, NOTHING_KNOWN, REGISTERS
 
 READ = (3, 4)
 """Functions that read holding and input registers. Both see the same ones."""
+
+SILENT_S: Final = 5.0
+"""Where all places are taken, a client that asked no longer ago keeps its own."""
 
 
 class Registers:
@@ -49,16 +51,31 @@ class Registers:
 
 
 class BoundedServer(ModbusTcpServer):
-    """Closes connections of clients that are not allowed, beyond the most, and that say nothing for long."""
+    """Has places for some clients: who asks keeps one, who asks nothing gives way to others."""
 
     def __init__(self, device: SimDevice, settings: ModbusSettings) -> None:
         super().__init__(device, address=(str(settings.bind_address), settings.port))
         self.decoder = _ReadingOnly(True)  # noqa: FBT003 - the library's own way to say "requests"
         self._settings = settings
+        self._connections: set[Connection] = set()
 
-    def callback_new_connection(self) -> ServerRequestHandler:
+    def callback_new_connection(self) -> Connection:
         """Return what answers a new connection."""
-        return _Connection(self, self._settings, lambda: len(self.active_connections))
+        return Connection(self, self._settings, on_open=self._opened, on_close=self._connections.discard)
+
+    def _opened(self, new: Connection) -> bool:
+        """Tell whether there is a place for a connection. The one without a request for longest gives way.
+
+        Those that never sent a whole one do so first, however new they are.
+        """
+        if len(self._connections) >= self._settings.max_connections:
+            before_s = self.loop.time() - SILENT_S
+            idle = [one for one in self._connections if not one.has_asked or one.waiting_since_s < before_s]
+            if not idle:
+                return False
+            min(idle, key=lambda one: (one.has_asked, one.waiting_since_s)).end()
+        self._connections.add(new)
+        return True
 
 
 class _ReadingOnly(DecodePDU):
@@ -85,41 +102,3 @@ class _Refused(ModbusPDU):
     async def datastore_update(self, _context: ModbusServerContext, _device_id: int) -> ModbusPDU:
         """Return the exception; nothing is looked up."""
         return ExceptionResponse(self.function_code, self._reason)
-
-
-class _Connection(ServerRequestHandler):
-    def __init__(
-        self, server: ModbusTcpServer, settings: ModbusSettings, connections: Callable[[], int]
-    ) -> None:
-        super().__init__(server, None, None, None)  # type: ignore[no-untyped-call]
-        self._settings = settings
-        self._connections = connections
-        self._idle: asyncio.TimerHandle | None = None
-
-    def callback_connected(self) -> None:
-        """Close the connection at once where it is one too many, or not allowed."""
-        super().callback_connected()
-        if self._connections() > self._settings.max_connections or not self._is_allowed():
-            self.loop.call_soon(self.close)
-        else:
-            self._wait()
-
-    def callback_data(self, data: bytes, addr: tuple[str, int] | None = None) -> int:
-        """Take what has come, and wait anew."""
-        self._wait()
-        return super().callback_data(data, addr)
-
-    def callback_disconnected(self, exc: Exception | None) -> None:
-        """Forget the wait."""
-        if self._idle is not None:
-            self._idle.cancel()
-        super().callback_disconnected(exc)
-
-    def _wait(self) -> None:
-        if self._idle is not None:
-            self._idle.cancel()
-        self._idle = self.loop.call_later(self._settings.idle_timeout_s, self.close)
-
-    def _is_allowed(self) -> bool:
-        peer = None if self.transport is None else self.transport.get_extra_info("peername")
-        return peer is not None and self._settings.allows(ip_address(peer[0].partition("%")[0]))

@@ -6,7 +6,7 @@ import signal
 import socket
 import time
 from collections.abc import Iterator
-from contextlib import closing, suppress
+from contextlib import ExitStack, closing
 from pathlib import Path
 
 import pytest
@@ -19,7 +19,7 @@ from service.storage.records import AlarmPlace, AlarmSpec
 from service.storage.states import AlarmKind, LinkState
 from testing.ports import LOOPBACK
 from testing.service.conditions import FAULT, HEALTHY, tell
-from testing.service.gateways import running_gateways
+from testing.service.gateways import running_gateways, started_gateways
 from testing.service.iec104_master import (
     FLOAT,
     INTERROGATED,
@@ -35,7 +35,7 @@ from testing.service.iec104_master import (
 )
 from testing.service.links import set_link_state
 from testing.service.plants import NOW_NS
-from testing.waiting import eventually
+from testing.waiting import eventually, wait_until
 from tests.service.gateways.settings import port_of, settings_of
 
 FAN, PUMP = FIRST, FIRST + BLOCK
@@ -140,17 +140,19 @@ def test_commands_do_nothing_and_say_so(port: int) -> None:
 
 
 def test_silent_and_garbling_clients_keep_nobody_out(repository: Repository, tmp_path: Path) -> None:
-    chosen = settings_of("iec104", tmp_path, max_connections=20)
-    with running_gateways(chosen):
-        crowd = [socket.create_connection((LOOPBACK, port_of(chosen))) for _ in range(15)]
-        for number, one in enumerate(crowd):
-            with suppress(OSError):
+    chosen = settings_of("iec104", tmp_path)
+    crowds = 3 * Iec104Settings().max_connections
+    with running_gateways(chosen), closing(Master(LOOPBACK, port_of(chosen))) as before, ExitStack() as crowd:
+        for number in range(crowds):
+            one = crowd.enter_context(socket.create_connection((LOOPBACK, port_of(chosen))))
+            if number % 3 == 1:
                 one.sendall(b"\x68" + bytes([4 + number]) + os.urandom(number + 4))
+            if number % 3 == 2:
+                one.sendall(b"\x68\x04\x43\x00\x00\x00")  # TESTFR act
         with closing(Master(LOOPBACK, port_of(chosen))) as master:
-            master.interrogate()
-            assert PUMP in master.told
-        for one in crowd:
-            one.close()
+            for station in (master, before):
+                station.interrogate()
+                assert PUMP in station.told
 
 
 def test_a_gateway_that_is_killed_is_back_with_the_right_values(
@@ -174,6 +176,22 @@ def test_a_gateway_that_is_killed_is_back_with_the_right_values(
         os.kill(first, signal.SIGKILL)
         tell(repository, FAULT)
         assert eventually(lambda: fault() == 1)
+
+
+def test_a_port_that_is_taken_is_told_and_tried_again(repository: Repository, tmp_path: Path) -> None:
+    chosen = settings_of("iec104", tmp_path)
+    port = port_of(chosen)
+    with ExitStack() as running:
+        with socket.create_server((LOOPBACK, port)):
+            gateways = running.enter_context(started_gateways(chosen))
+            wait_until(lambda: f"{LOOPBACK}:{port}: " in (gateways.status()[0].problem or ""), "the port")
+            assert "address already in use" in str(gateways.status()[0].problem)
+            process = gateways.status()[0].process_id
+        wait_until(lambda: gateways.status()[0].problem is None, "the port to be tried again")
+        assert gateways.status()[0].process_id == process
+        with closing(Master(LOOPBACK, port)) as master:
+            master.interrogate()
+    assert PUMP in master.told
 
 
 def test_the_page_has_every_point_and_the_map_is_written(port: int, tmp_path: Path) -> None:

@@ -130,6 +130,24 @@ def test_a_file_that_is_missing_is_named_and_nobody_is_served(
             socket.create_connection((LOOPBACK, port_of(chosen)))
 
 
+def test_a_key_that_others_may_read_is_refused_until_it_is_its_owners_alone(
+    repository: Repository, tmp_path: Path, pki: Pki
+) -> None:
+    key = tmp_path / "shared.pem"
+    key.write_bytes(pki.relay.key_file.read_bytes())
+    key.chmod(0o640)
+    chosen = settings_of("iec104", tmp_path, tls={**files_of(pki), "key": key})
+    told = f"{key}: expected a file of mode 600, its owner's alone (chmod 600 {key}), found mode 640"
+    with started_gateways(chosen) as gateways:
+        wait_until(lambda: told in (gateways.status()[0].problem or ""), "the mode of the file")
+        with pytest.raises(ConnectionRefusedError):
+            socket.create_connection((LOOPBACK, port_of(chosen)))
+        key.chmod(0o600)
+        wait_until(lambda: gateways.status()[0].problem is None, "the gateway to work")
+        with linked(port_of(chosen), pki, pki.client) as link:
+            Master(LOOPBACK, port_of(chosen), link).interrogate()
+
+
 def test_all_files_are_needed_and_are_enough_beyond_loopback(pki: Pki, tmp_path: Path) -> None:
     files = files_of(pki)
     beyond = {"bind_address": "10.0.0.1", "tls": files}

@@ -102,6 +102,23 @@ def test_clients_that_say_nothing_keep_nobody_out_for_long(port: int) -> None:
             assert one.recv(1) == b""
 
 
+def test_a_client_that_drips_octets_and_never_asks_is_sent_away(port: int) -> None:
+    with socket.create_connection((LOOPBACK, port)) as link:
+        link.sendall(struct.pack(">HHHB", 1, 0, 254, 1))
+        link.settimeout(0.05)
+
+        def is_sent_away() -> bool:
+            try:
+                link.sendall(b"\x00")
+                return link.recv(1) == b""
+            except TimeoutError:
+                return False
+            except ConnectionError:
+                return True
+
+        assert eventually(is_sent_away, within_s=10)
+
+
 @settings(max_examples=50, deadline=None)
 @given(st.lists(st.binary(min_size=1, max_size=300), min_size=1, max_size=5))
 def garbled_requests(port: int, requests: list[bytes]) -> None:
