@@ -3,6 +3,9 @@
 import asyncio
 import gc
 import socket
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+from pathlib import Path
 from typing import Final
 
 import structlog
@@ -10,12 +13,14 @@ from asyncua import ua
 from asyncua.crypto.validator import CertificateValidator, CertificateValidatorOptions
 from asyncua.server.event_generator import EventGenerator
 
+from mms import CredentialFileError, read_secret
 from service.configuration.gateways.opcua import OpcUaSettings
 from service.gateways.context import GatewayContext
 from service.gateways.opcua.account_watch import AccountWatch
 from service.gateways.opcua.address_space import OURS, PlantNodes
 from service.gateways.opcua.certificate import own_certificate
 from service.gateways.opcua.history import TrendHistory, tell_capabilities, utc
+from service.gateways.opcua.limits import set_limits
 from service.gateways.opcua.methods import PlantMethods
 from service.gateways.opcua.transport import BoundedServer
 from service.gateways.opcua.trusted_clients import TrustedClients
@@ -48,7 +53,22 @@ def run(context: GatewayContext) -> None:
     """Serve until the service is gone."""
     settings = context.settings.gateways.opcua
     assert settings is not None  # noqa: S101 - it was started for them
-    asyncio.run(_serve(context, settings))
+    if settings.key is not None:
+        _wait_for_key(context, settings.key)
+    if not context.stop.is_set():
+        asyncio.run(_serve(context, settings))
+
+
+def _wait_for_key(context: GatewayContext, key: Path) -> None:
+    """Return once the key can be used and is its owner's alone; tell meanwhile why it is not."""
+    while not context.stop.is_set():
+        try:
+            read_secret(key)
+        except CredentialFileError as error:
+            context.tell(f"gateways.opcua.key: {error}")
+            context.stop.wait(LOOK_S)
+        else:
+            return
 
 
 async def _serve(context: GatewayContext, settings: OpcUaSettings) -> None:
@@ -57,16 +77,22 @@ async def _serve(context: GatewayContext, settings: OpcUaSettings) -> None:
     server = await _server(context, settings, users, trusted)
     nodes = PlantNodes(server)
     await nodes.begin()
-    await PlantMethods(server, context.repository, context.settings).begin()
-    server.iserver.history_manager = TrendHistory(server.iserver, context.repository, nodes.histories)
+    methods = PlantMethods(server, context.repository, context.settings)
+    await methods.begin()
+    history = TrendHistory(server.iserver, context.repository, nodes.histories)
+    server.iserver.history_manager = history
     await tell_capabilities(server)
     events = await _events(server)
     follower = context.follower()
+    # Of its own: values have to stop being good while all other threads wait for a database that hangs.
+    following = ThreadPoolExecutor(1, "OPC UA follower")
+    next_change = partial(follower.next_change, context.stop, longest_s=LOOK_S)
+    loop = asyncio.get_running_loop()
     watching = asyncio.create_task(AccountWatch(server, context.repository).run())
     is_known = False
     try:
         while not context.stop.is_set():
-            change = await asyncio.to_thread(follower.next_change, context.stop, longest_s=LOOK_S)
+            change = await loop.run_in_executor(following, next_change)
             if change is not None:
                 await nodes.tell(change)
             if server.bserver is not None and change is not None:
@@ -81,8 +107,10 @@ async def _serve(context: GatewayContext, settings: OpcUaSettings) -> None:
                 watching.result()  # it has failed, and so the gateway does: the service starts it again
     finally:
         watching.cancel()
+        following.shutdown(wait=False)
         follower.close()
-        users.close()
+        for threads in (users, methods, history):
+            threads.close()
         if server.bserver is not None:
             await server.stop()
 
@@ -103,7 +131,7 @@ async def _server(
     server.set_endpoint(f"opc.tcp://{settings.bind_address}:{settings.port}/")
     server.set_server_name("StatorWatch")
     await server.set_application_uri(uri)
-    server.iserver.max_connections = settings.max_connections
+    await set_limits(server, settings.max_connections)
     server.limits.max_message_size = LARGEST_MESSAGE
     certificate, key = settings.certificate, settings.key
     if certificate is None or key is None:

@@ -1,7 +1,7 @@
 """HistoryRead from the trends of the database."""
 
-import asyncio
 import struct
+import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
@@ -15,6 +15,7 @@ from asyncua.server.internal_server import InternalServer
 from sqlalchemy.exc import SQLAlchemyError
 
 from core.diagnosis.verdict import Verdict
+from service.gateways.opcua.worker_threads import LONGEST_S, TURN_S, WorkerThreads
 from service.storage import NotFoundError, Repository
 from service.storage.records import Page, Quantity, TrendPoint
 from service.timing.database_silence import database_trouble
@@ -23,6 +24,12 @@ log = structlog.get_logger(__name__)
 
 MOST: Final = 1000
 """Values of one answer; the client asks for more with the point that it is given."""
+
+MOST_OF_ALL: Final = 10_000
+"""Values of all nodes of one answer: each of a hundred nodes has a hundred, and a point to go on at."""
+
+READS_AT_ONCE: Final = 2
+"""Requests that are answered at a time."""
 
 EPOCH: Final = datetime(1970, 1, 1, tzinfo=UTC)
 MICROSECOND: Final = timedelta(microseconds=1)
@@ -74,6 +81,19 @@ class _Domain:
     lacks_end: bool
 
 
+@dataclass(slots=True)
+class _Reading:
+    """One request. until_s: when its client has been refused. has_failed: the database does not answer."""
+
+    until_s: float
+    has_failed: bool = False
+
+    @property
+    def is_in_vain(self) -> bool:
+        """Return whether to ask the database for nothing more."""
+        return self.has_failed or time.monotonic() > self.until_s
+
+
 class _Trend(Protocol):
     """Asks for values of one figure of a motor."""
 
@@ -91,25 +111,42 @@ class TrendHistory(HistoryManager):  # type: ignore[misc]
         super().__init__(server)
         self._repository = repository
         self._nodes = nodes
+        self._threads = WorkerThreads("history", READS_AT_ONCE)
+
+    def close(self) -> None:
+        """Read nothing more."""
+        self._threads.close()
 
     async def read_history(self, params: ua.HistoryReadParameters) -> list[ua.HistoryReadResult]:
         """Return the values of each node, or why there are none."""
         if params.ReleaseContinuationPoints:  # they have all that is needed: nothing is kept here
             return [ua.HistoryReadResult() for _ in params.NodesToRead]
-        return [await self._answer(params.HistoryReadDetails, asked) for asked in params.NodesToRead]
+        # A thread is not to go on for a client that is not there any more.
+        reading = _Reading(until_s=time.monotonic() + TURN_S + LONGEST_S)
+        return await self._threads.run(partial(self._answers, params, reading))
 
-    async def _answer(self, details: Any, asked: ua.HistoryReadValueId) -> ua.HistoryReadResult:
+    def _answers(self, params: ua.HistoryReadParameters, reading: _Reading) -> list[ua.HistoryReadResult]:
+        most = min(MOST, MOST_OF_ALL // max(len(params.NodesToRead), 1))
+        details = params.HistoryReadDetails
+        return [self._answer(details, asked, most, reading) for asked in params.NodesToRead]
+
+    def _answer(
+        self, details: Any, asked: ua.HistoryReadValueId, most: int, reading: _Reading
+    ) -> ua.HistoryReadResult:
+        if reading.is_in_vain:
+            return _refused(ua.StatusCodes.BadResourceUnavailable)
         try:
             motor, quantity = self._place(details, asked.NodeId)
             trend = partial(self._repository.trend, motor, quantity)
-            most = min(details.NumValuesPerNode or MOST, MOST)
-            return await asyncio.to_thread(_read, trend, _asked(details, asked.ContinuationPoint), most)
+            most = min(details.NumValuesPerNode or most, most)
+            return _read(trend, _asked(details, asked.ContinuationPoint), most)
         except ua.UaStatusCodeError as refused:
             return _refused(refused.code)
         except NotFoundError:
             return _refused(ua.StatusCodes.BadNodeIdUnknown)
         except SQLAlchemyError as error:
             log.warning("a history cannot be read", error=database_trouble(error))
+            reading.has_failed = True
             return _refused(ua.StatusCodes.BadResourceUnavailable)
 
     def _place(self, details: object, node: ua.NodeId) -> tuple[str, Quantity]:

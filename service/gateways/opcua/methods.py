@@ -1,18 +1,20 @@
 """Methods of the server: have a motor recorded, and acknowledge an alarm. Each needs the right role."""
 
-import asyncio
 import time
 from collections.abc import Callable
+from functools import partial
 from typing import Final
 
 import structlog
 from asyncua import Server, ua
+from asyncua.common.utils import ServiceError
 from sqlalchemy.exc import SQLAlchemyError
 
 from service.access.permissions import Permission
 from service.configuration.settings import Settings
 from service.gateways.opcua.address_space import OURS
 from service.gateways.opcua.users import CALLER, PlantUser, actor_of, has_changed
+from service.gateways.opcua.worker_threads import WorkerThreads
 from service.storage import NotFoundError, Repository, StorageError
 from service.storage.records import Actor
 from service.timing.database_silence import database_trouble
@@ -20,6 +22,8 @@ from service.timing.database_silence import database_trouble
 log = structlog.get_logger(__name__)
 
 LONGEST: Final = 500
+CALLS_AT_ONCE: Final = 2
+"""Calls that are done at a time."""
 TEXT: Final = ua.VariantType.String
 
 Work = Callable[[Actor], list[ua.Variant]]
@@ -32,6 +36,11 @@ class PlantMethods:
         self._server = server
         self._repository = repository
         self._settings = settings
+        self._threads = WorkerThreads("method", CALLS_AT_ONCE)
+
+    def close(self) -> None:
+        """Do nothing more."""
+        self._threads.close()
 
     async def begin(self) -> None:
         """Make the object with its methods."""
@@ -80,7 +89,10 @@ class PlantMethods:
         """Return what the work gives, or the status that tells the client why there is nothing."""
         caller = CALLER.get()
         try:
-            return await asyncio.to_thread(self._done, caller, permission, work)
+            return await self._threads.run(partial(self._done, caller, permission, work))
+        except ServiceError as error:
+            log.warning("a method is not waited for any longer", reason=ua.StatusCode(error.code).name)
+            return ua.StatusCode(error.code)
         except NotFoundError as error:
             log.info("a method was refused", reason=str(error))
             return ua.StatusCode(ua.StatusCodes.BadNotFound)

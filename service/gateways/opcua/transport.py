@@ -46,6 +46,7 @@ OF_NO_SESSION: Final = (
     ua.NodeId(ua.ObjectIds.CloseSecureChannelRequest_Encoding_DefaultBinary),
 )
 """Requests that name no session."""
+TRANSFER: Final = ua.NodeId(ua.ObjectIds.TransferSubscriptionsRequest_Encoding_DefaultBinary)
 
 
 class BoundedServer(Server):  # type: ignore[misc]
@@ -181,7 +182,10 @@ class _StrictProcessor(UaProcessor):  # type: ignore[misc]
         if self.session is not None and typeid not in OF_NO_SESSION and token != self.session.auth_token:
             raise ServiceError(ua.StatusCodes.BadSessionIdInvalid)
         if typeid != ACTIVATE:
-            return await super()._process_message(typeid, requesthdr, seqhdr, body)
+            answered = await super()._process_message(typeid, requesthdr, seqhdr, body)
+            if typeid == TRANSFER and self.session is not None:
+                self._bring_here(self.session)
+            return answered
         self._check_channel()
         wanted = struct_from_binary(ua.ActivateSessionParameters, body.copy())
         existing = self.session or self.iserver.lookup_external_session(token)
@@ -204,6 +208,17 @@ class _StrictProcessor(UaProcessor):  # type: ignore[misc]
         if self.session is not None:
             self.session.client_certificate = self._connection.security_policy.peer_certificate
         return answered
+
+    def _bring_here(self, session: BoundSession) -> None:
+        """Have subscriptions wait for requests of this connection; the library leaves them at another."""
+        for number, one in session.subscriptions():
+            if one.pub_request_callback == self.get_publish_request:
+                continue
+            for other in self.others:
+                if other.processor is not None:
+                    other.processor._publish_results_subs.pop(number, None)  # noqa: SLF001 - see above
+            one.pub_result_callback = self.forward_publish_response
+            one.pub_request_callback = self.get_publish_request
 
     def _take_from_others(self, session: BoundSession) -> None:
         """End the connection that had the session before, which may be lost without knowing it."""

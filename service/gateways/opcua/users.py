@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, Final
 
 import structlog
 from asyncua import ua
@@ -18,7 +18,7 @@ from sqlalchemy.exc import SQLAlchemyError
 from service.access.logins import LoginLockedError, LoginRefusedError, account_of, attempt, check_password
 from service.access.permissions import Permission, permissions_of
 from service.configuration.access import AccessSettings
-from service.gateways.opcua.login_threads import LoginThreads
+from service.gateways.opcua.worker_threads import WorkerThreads
 from service.storage import NotFoundError, Repository
 from service.storage.records import Actor
 from service.storage.records import User as Account
@@ -28,6 +28,9 @@ log = structlog.get_logger(__name__)
 
 ADDRESS = "opcua"
 """Before the host of a client, for the audit trail and for the count of logins that failed."""
+
+LOGINS_AT_ONCE: Final = 2
+"""Logins that are looked at at a time: a password takes 64 MiB."""
 
 
 @dataclass
@@ -91,7 +94,7 @@ class ServiceUsers(UserManager):  # type: ignore[misc]
         self._repository = repository
         self._settings = settings
         self._anonymous = anonymous
-        self._threads = LoginThreads()
+        self._threads = WorkerThreads("login", LOGINS_AT_ONCE)
 
     async def log_in(self, name: str, password: str, *, host: str) -> PlantUser:
         """Return whose name and password it is. host: where from. Raises ServiceError."""

@@ -22,6 +22,12 @@ def node(path: str) -> Any:
     return o6.NodeId(f"ns={OURS};s={path}")
 
 
+def told(client: Any, path: str) -> list[object]:
+    """Status and source time of a value, as good as it may be."""
+    found = client.read(node(path), valueOnly=False)
+    return [int(found.status), str(found.sourceTimestamp)]
+
+
 def main() -> None:
     """Look at PUMP-A1, at its history, and have it recorded."""
     client = o6.Client(
@@ -42,6 +48,7 @@ def main() -> None:
             "state": client.read(node("motor/PUMP-A1/State")),
             "level": client.read(node("motor/PUMP-A1/FaultLevel")),
             "health": int(client.read(node("motor/PUMP-A1/DeviceHealth"))),
+            "told": {motor: told(client, f"motor/{motor}/FaultLevel") for motor in ("PUMP-A1", "FAN-A2")},
             "history": [one.value for one in history.dataValues],
             "request": str(client.call(node("service"), node("service/TriggerRecording"), ["PUMP-A1"])),
         }

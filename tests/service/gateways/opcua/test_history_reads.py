@@ -14,7 +14,7 @@ from sqlalchemy.orm import Session
 
 from core.diagnosis.verdict import Diagnosis
 from service.configuration.settings import Settings, sqlite_url
-from service.gateways.opcua.history import MOST
+from service.gateways.opcua.history import MOST, MOST_OF_ALL
 from service.recording_store.folder import FolderStore
 from service.storage import Repository, connect
 from service.storage.models import DiagnosisRow, JobRow
@@ -152,6 +152,31 @@ def test_more_than_a_thousand_values_come_in_answers_of_a_thousand(
     assert [len(one) for one in newest_first] == [MOST, 3]
     assert list(chain(*newest_first)) == levels[::-1]
     assert len(values(settings, FIRST, FAR, 5 * MOST)) == MOST
+
+
+def test_many_nodes_share_the_values_of_an_answer(
+    repository: Repository, tmp_path: Path, settings: Settings
+) -> None:
+    keep(repository, tmp_path, [fault(0.0)])
+    repeat(tmp_path, 2 * MOST_OF_ALL // 50)
+    nodes = 50
+
+    async def ask(client: Client) -> list[Any]:
+        level = node(client, LEVEL)
+        asked = ua.HistoryReadParameters(
+            HistoryReadDetails=details_of(FIRST, FAR),
+            ReleaseContinuationPoints=False,
+            NodesToRead=[ua.HistoryReadValueId(NodeId=level.nodeid)] * nodes,
+        )
+        first = list(await client.uaclient.history_read(asked))
+        return [*first, await level.history_read(details_of(FIRST, FAR), first[-1].ContinuationPoint)]
+
+    *shares, rest = looking(settings, ask)
+    assert {one.StatusCode.name for one in (*shares, rest)} == {"Good"}
+    told = [[one.Value.Value for one in share.HistoryData.DataValues] for share in shares]
+    assert [len(one) for one in told] == [MOST_OF_ALL // nodes] * nodes
+    later = [one.Value.Value for one in rest.HistoryData.DataValues]
+    assert told[-1] + later == [number / 10**5 for number in range(2 * MOST_OF_ALL // nodes + 1)]
 
 
 def test_the_newest_come_first_where_the_start_is_later_than_the_end_or_not_named(

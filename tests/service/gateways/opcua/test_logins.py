@@ -10,8 +10,9 @@ from pathlib import Path
 from asyncua import Client, ua
 
 from service.configuration.settings import Settings
-from service.gateways.opcua.login_threads import AT_ONCE, LONGEST_S
 from service.gateways.opcua.transport import SILENT_S
+from service.gateways.opcua.users import LOGINS_AT_ONCE as AT_ONCE
+from service.gateways.opcua.worker_threads import LONGEST_S
 from service.storage import Repository
 from service.storage.records import Role
 from testing.service.conditions import HEALTHY, tell

@@ -10,6 +10,7 @@ import sys
 import time
 from collections.abc import Awaitable, Callable, Iterator
 from contextlib import ExitStack, suppress
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -72,7 +73,7 @@ async def encrypted(settings: Settings, user: str | None = None, password: str =
     folder = settings.data_directory / "client"
     folder.mkdir(exist_ok=True)
     certificate, key = own_certificate(folder, "urn:statorwatch:test-client", LOOPBACK)
-    client = Client(address_of(settings))
+    client = Client(address_of(settings), timeout=60)
     client.application_uri = "urn:statorwatch:test-client"
     if user is not None:
         client.set_user(user)
@@ -302,6 +303,10 @@ def test_open62541_reads_encrypted_with_history_and_has_a_motor_recorded(
     assert peer.returncode == 0, peer.stdout[-2000:] + peer.stderr[-2000:]
     seen = json.loads(peer.stdout.splitlines()[-1])
     assert (seen["state"], seen["level"], seen["health"]) == ("fault", 0.0121, 1)
+    status, time_said = seen["told"]["PUMP-A1"]
+    assert status == ua.StatusCodes.Good
+    assert datetime.fromisoformat(time_said) == datetime.fromtimestamp(NOW_NS // SECOND_NS, UTC)
+    assert seen["told"]["FAN-A2"][0] == ua.StatusCodes.BadNoData
     assert seen["history"] == [0.01, 0.02, 0.03]
     assert ("recording-requested", "otto", f"opcua {LOOPBACK}") in done(repository)
     assert repository.recording_requests(motor="PUMP-A1", limit=1).items

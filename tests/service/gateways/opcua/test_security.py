@@ -287,3 +287,21 @@ def test_a_server_lists_none_but_itself(repository: Repository, tmp_path: Path) 
         (itself,) = asyncio.run(listed())
         assert itself.startswith("urn:statorwatch:")
         assert value(chosen, STATE).StatusCode.value == ua.StatusCodes.BadWaitingForInitialData
+
+
+def test_a_key_that_others_may_read_is_told_until_it_is_its_owners_alone(
+    repository: Repository, tmp_path: Path
+) -> None:
+    tell(repository, HEALTHY)
+    own = card(tmp_path / "server")
+    own.key.chmod(0o640)
+    chosen = settings_of(
+        "opcua", tmp_path, certificate=own.certificate, key=own.key, anonymous=True, unencrypted=True
+    )
+    with started_gateways(chosen) as gateways:
+        wait_until(lambda: "mode 600" in str(gateways.status()[0].problem), "the key to be named")
+        assert f"gateways.opcua.key: {own.key}" in str(gateways.status()[0].problem)
+        own.key.chmod(0o600)
+        wait_until(lambda: gateways.status()[0].problem is None, "the gateway to work")
+        assert value(chosen, STATE).Value.Value == "healthy"
+        assert gateways.status()[0].restarts == 0

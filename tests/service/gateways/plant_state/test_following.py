@@ -23,7 +23,6 @@ from testing.service.links import set_link_state
 from testing.service.plants import NOW_NS
 from testing.waiting import wait_until
 
-
 SILENCE_S = 4.0
 """Longer than a reading on a machine that does much else."""
 

@@ -1,4 +1,4 @@
-"""Threads that look at names and passwords: few at a time, and nobody waits for them without end."""
+"""Threads for what waits for the database: few at a time, and nobody waits for them without end."""
 
 import asyncio
 from collections.abc import Callable
@@ -8,11 +8,8 @@ from typing import Final, TypeVar
 from asyncua import ua
 from asyncua.common.utils import ServiceError
 
-AT_ONCE: Final = 2
-"""Logins that are looked at at a time: a password takes 64 MiB."""
-
 TURN_S: Final = 5.0
-"""Longest wait for others that are looked at."""
+"""Longest wait for others whose work is done."""
 
 LONGEST_S: Final = 10.0
 """Longest time for one: the database may be locked, or away."""
@@ -20,12 +17,15 @@ LONGEST_S: Final = 10.0
 Result = TypeVar("Result")
 
 
-class LoginThreads:
-    """Does the work of logins beside the event loop, for which all clients wait."""
+class WorkerThreads:
+    """Does one kind of work beside the event loop, for which all clients wait.
 
-    def __init__(self) -> None:
-        self._pool = ThreadPoolExecutor(AT_ONCE, "OPC UA login")
-        self._turns = asyncio.Semaphore(AT_ONCE)
+    Each kind has threads of its own: where all of one kind hang, the others go on.
+    """
+
+    def __init__(self, name: str, at_once: int) -> None:
+        self._pool = ThreadPoolExecutor(at_once, f"OPC UA {name}")
+        self._turns = asyncio.Semaphore(at_once)
 
     async def run(self, work: Callable[[], Result]) -> Result:
         """Return what the work gives. Raises ServiceError where there is no turn, or it takes too long."""
