@@ -20,9 +20,8 @@ _ACCESS_ERRORS: Final[dict[DataAccessError, type[errors.MmsError]]] = {
     DataAccessError.UNDEFINED: errors.NotFound,
     DataAccessError.NON_EXISTENT: errors.NotFound,
 }
-_MOST_TOGETHER: Final = (
-    64  # a request of as many of the longest names fits into the smallest usual PDU of 8 kB
-)
+# A request of as many of the longest names fits into the smallest usual PDU of 8 kB.
+_MOST_TOGETHER: Final = 64
 _ARRAY_ELEMENT: Final = re.compile(rb"([^(]+)\(([0-9]+)\)(?:\$(.+))?")
 
 

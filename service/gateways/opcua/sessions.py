@@ -44,9 +44,7 @@ class BoundSession(SubscribingSession):
             raise ServiceError(ua.StatusCodes.BadSessionNotActivated)
         if certificate != self.client_certificate:
             raise ServiceError(ua.StatusCodes.BadSecurityChecksFailed)
-        account = self.user.account if isinstance(self.user, PlantUser) else None
-        wanted = None if user is None else user.account
-        if (account and account.name) != (wanted and wanted.name):
+        if self.account_name != (None if user is None else user.account_name):
             raise ServiceError(ua.StatusCodes.BadIdentityChangeNotSupported)
 
     async def read(self, params: Any) -> Any:

@@ -31,10 +31,14 @@ class SubscribingSession(InternalSession):  # type: ignore[misc]
     client_certificate: bytes | None = None
 
     @property
+    def account_name(self) -> str | None:
+        """Return whose it is; None for somebody who has not said who it is."""
+        return self.user.account_name if isinstance(self.user, PlantUser) else None
+
+    @property
     def client(self) -> tuple[str | None, bytes | None] | None:
         """Return account and certificate of its client; None where neither is known."""
-        account = self.user.account if isinstance(self.user, PlantUser) else None
-        known = (None if account is None else account.name, self.client_certificate)
+        known = (self.account_name, self.client_certificate)
         return known if any(known) else None
 
     @property
@@ -105,7 +109,7 @@ class SubscribingSession(InternalSession):  # type: ignore[misc]
 
     def publish(self, acks: Iterable[Any] | None = None) -> tuple[int, list[Any]]:
         """Take what the client has of its own subscriptions. Return how many it has, and what was taken."""
-        own = [one for one in self._all.values() if self._owners.get(one) is self]
+        own = list(self.subscriptions())
         if not own:
             raise ServiceError(ua.StatusCodes.BadNoSubscription)
         results = []

@@ -181,14 +181,18 @@ class _StrictProcessor(UaProcessor):  # type: ignore[misc]
         token = requesthdr.AuthenticationToken
         if self.session is not None and typeid not in OF_NO_SESSION and token != self.session.auth_token:
             raise ServiceError(ua.StatusCodes.BadSessionIdInvalid)
-        if typeid != ACTIVATE:
-            answered = await super()._process_message(typeid, requesthdr, seqhdr, body)
-            if typeid == TRANSFER and self.session is not None:
-                self._bring_here(self.session)
-            return answered
+        if typeid == ACTIVATE:
+            return await self._activate(typeid, requesthdr, seqhdr, body)
+        answered = await super()._process_message(typeid, requesthdr, seqhdr, body)
+        if typeid == TRANSFER and self.session is not None:
+            self._bring_here(self.session)
+        return answered
+
+    async def _activate(self, typeid: Any, requesthdr: Any, seqhdr: Any, body: Any) -> Any:
+        """Let somebody in, also on a new connection to a session that there is."""
         self._check_channel()
         wanted = struct_from_binary(ua.ActivateSessionParameters, body.copy())
-        existing = self.session or self.iserver.lookup_external_session(token)
+        existing = self.session or self.iserver.lookup_external_session(requesthdr.AuthenticationToken)
         user = await self._user(existing, wanted.UserIdentityToken)
         is_taken_over = self.session is None and existing is not None
         if is_taken_over:

@@ -43,6 +43,11 @@ class PlantUser(User):  # type: ignore[misc]
     account: Account | None = None
     address: str = ADDRESS
 
+    @property
+    def account_name(self) -> str | None:
+        """Return the name of the account, if there is one."""
+        return None if self.account is None else self.account.name
+
     def may(self, permission: Permission) -> bool:
         """Return whether the roles allow this. Somebody unknown may look, where the settings say so."""
         if self.account is None:

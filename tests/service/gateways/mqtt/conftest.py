@@ -5,16 +5,14 @@ from pathlib import Path
 
 import pytest
 
-from service.configuration.gateways.mqtt import MqttSettings
-from service.configuration.gateways.settings import GatewaysSettings
 from service.configuration.settings import Settings
 from testing.service.mosquitto import Mosquitto, running_mosquitto
+from tests.service.gateways import settings
 
 
 def settings_of(directory: Path, port: int, **table: object) -> Settings:
     """Settings of a service whose gateway tells a broker on this port."""
-    mqtt = MqttSettings.model_validate({"port": port, "timeout_s": 3.0, "keepalive_s": 5, **table})
-    return Settings(data_directory=directory, stale_after_days=3650, gateways=GatewaysSettings(mqtt=mqtt))
+    return settings.settings_of("mqtt", directory, port=port, **{"timeout_s": 3.0, "keepalive_s": 5, **table})
 
 
 @pytest.fixture
