@@ -8,12 +8,9 @@ import pytest
 
 from service.gateways.plant_state.following import SILENCE_S
 from service.gateways.supervision import PlantGateways
-from service.storage import Repository, connect
-from testing.not_installed import not_installed
-from testing.service.conditions import HEALTHY, tell
+from testing.service.gateways import healthy_plant_on_postgresql
 from testing.service.mosquitto import running_mosquitto
-from testing.service.plants import two_motor_plant
-from testing.service.postgresql import INSTALLED, PostgresServer, binaries, serving_postgresql
+from testing.service.postgresql import PostgresServer
 from testing.waiting import wait_until
 from tests.service.gateways.watching import all_gateways, watched_gateways
 
@@ -32,19 +29,7 @@ LATER_S = 4.0
 def test_a_silent_database_leaves_nothing_good_and_all_is_good_again_after(
     tmp_path: Path, ends: Callable[[PostgresServer], None], begins: Callable[[PostgresServer], None]
 ) -> None:
-    folder = binaries()
-    if folder is None:
-        not_installed(f"no PostgreSQL server in {INSTALLED}: apt-get install postgresql")
-    with (
-        serving_postgresql(folder) as postgresql,
-        postgresql.database() as url,
-        running_mosquitto(tmp_path) as broker,
-    ):
-        engine = connect(url)
-        repository = Repository(engine)
-        repository.sync_plant(two_motor_plant())
-        tell(repository, HEALTHY)
-        engine.dispose()
+    with healthy_plant_on_postgresql() as (postgresql, url), running_mosquitto(tmp_path) as broker:
         chosen = all_gateways(tmp_path, broker, database_url=url, stale_after_days=3650)
         with watched_gateways(chosen, broker) as (gateways, watch):
             watch.wait_for_good()

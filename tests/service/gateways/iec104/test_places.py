@@ -15,7 +15,8 @@ from testing.ports import LOOPBACK, free_port
 from testing.relays.pki import Pki
 from testing.service.iec104_master import Master
 from testing.waiting import wait_until
-from tests.service.gateways.iec104.test_tls import files_of, linked, pki
+from tests.service.gateways.iec104.test_tls import linked
+from tests.service.gateways.tls import files_of, pki
 
 __all__ = ["pki"]  # a fixture
 

@@ -7,7 +7,6 @@ import socket
 import ssl
 from collections.abc import Iterator
 from contextlib import suppress
-from datetime import timedelta
 from pathlib import Path
 
 import pytest
@@ -25,25 +24,9 @@ from testing.waiting import wait_until
 from tests.service.gateways.iec104.test_iec104 import PUMP
 from tests.service.gateways.iec104.test_spoiled_telegrams import START_DATA_TRANSFER, UNITS, telegram
 from tests.service.gateways.settings import port_of, settings_of
+from tests.service.gateways.tls import A_DAY, ALERT, files_of, pki
 
-A_DAY = timedelta(days=1)
-ALERT = b"\x15"
-"""First octet of what TLS says of a handshake that fails."""
-
-
-@pytest.fixture(scope="module")
-def pki(tmp_path_factory: pytest.TempPathFactory) -> Pki:
-    return Pki.make(tmp_path_factory.mktemp("pki"))
-
-
-def files_of(pki: Pki, *pinned: Identity) -> dict[str, object]:
-    """The table `tls`: the client of the plant may connect, and who else is named."""
-    return {
-        "certificate": pki.relay.certificate_file,
-        "key": pki.relay.key_file,
-        "ca": pki.authority.certificate_file,
-        "pinned": [one.certificate_file for one in (pki.client, *pinned)],
-    }
+__all__ = ["pki"]  # a fixture
 
 
 @pytest.fixture

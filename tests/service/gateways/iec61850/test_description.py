@@ -18,8 +18,8 @@ from testing.relays.pki import Pki
 from testing.scl_schema import schema_errors
 from testing.service.gateways import running_gateways
 from tests.service.gateways.iec61850.test_iec61850 import FAN, PUMP, port
-from tests.service.gateways.iec61850.test_tls import files_of
 from tests.service.gateways.settings import settings_of
+from tests.service.gateways.tls import files_of
 
 __all__ = ["port"]  # a fixture
 

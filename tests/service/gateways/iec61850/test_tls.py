@@ -8,7 +8,6 @@ import socket
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import replace
-from datetime import timedelta
 from pathlib import Path
 
 import iec61850
@@ -25,28 +24,13 @@ from testing.service.gateways import running_gateways, started_gateways
 from testing.waiting import wait_until
 from tests.service.gateways.iec61850.test_iec61850 import MEASURED, PUMP
 from tests.service.gateways.settings import port_of, settings_of
+from tests.service.gateways.tls import A_DAY, ALERT, files_of, pki
 
-A_DAY = timedelta(days=1)
+__all__ = ["pki"]  # a fixture
+
 LEVEL = f"{PUMP}/GGIO1.AnIn1.mag.f"
 PASSWORD = "open sesame"  # noqa: S105 - of the test
 CONNECT_REQUEST = bytes.fromhex("0300001611e00000000100c0010dc2020001c1020000")
-ALERT = b"\x15"
-"""First octet of what TLS says of a handshake that fails."""
-
-
-@pytest.fixture(scope="module")
-def pki(tmp_path_factory: pytest.TempPathFactory) -> Pki:
-    return Pki.make(tmp_path_factory.mktemp("pki"))
-
-
-def files_of(pki: Pki, *pinned: Identity) -> dict[str, object]:
-    """The table `tls`: the client of the plant may connect, and who else is named."""
-    return {
-        "certificate": pki.relay.certificate_file,
-        "key": pki.relay.key_file,
-        "ca": pki.authority.certificate_file,
-        "pinned": [one.certificate_file for one in (pki.client, *pinned)],
-    }
 
 
 @pytest.fixture

@@ -13,13 +13,11 @@ import pytest
 
 from service.gateways.modbus.gateway import NUMBERS
 from service.gateways.modbus.register_map import BLOCK, FIRST_BLOCK, MOST_MOTORS
-from service.storage import Repository, connect
-from testing.not_installed import not_installed
+from service.storage import Repository
 from testing.ports import LOOPBACK
 from testing.service.conditions import HEALTHY, tell
-from testing.service.gateways import running_gateways, started_gateways
+from testing.service.gateways import healthy_plant_on_postgresql, running_gateways, started_gateways
 from testing.service.plants import two_motor_plant
-from testing.service.postgresql import INSTALLED, binaries, serving_postgresql
 from testing.waiting import eventually, wait_until
 from tests.service.gateways.modbus.telegrams import registers
 from tests.service.gateways.modbus.test_modbus import FAN, PUMP
@@ -96,15 +94,7 @@ def test_a_motor_that_left_is_bad_also_where_the_gateway_never_saw_it(
 
 @pytest.mark.campaign
 def test_a_database_that_comes_after_the_gateway_makes_the_values_good(tmp_path: Path) -> None:
-    folder = binaries()
-    if folder is None:
-        not_installed(f"no PostgreSQL server in {INSTALLED}: apt-get install postgresql")
-    with serving_postgresql(folder) as postgresql, postgresql.database() as url:
-        engine = connect(url)
-        repository = Repository(engine)
-        repository.sync_plant(two_motor_plant())
-        tell(repository, HEALTHY)
-        engine.dispose()
+    with healthy_plant_on_postgresql() as (postgresql, url):
         chosen = settings_of("modbus", tmp_path).model_copy(update={"database_url": url})
         with running_gateways(chosen), connected(port_of(chosen)) as link:
             wait_until(lambda: codes(link, PUMP) == HEALTHY_AND_GOOD, "a good value")

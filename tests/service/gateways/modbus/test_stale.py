@@ -10,12 +10,10 @@ import pytest
 
 from core.units import NANOSECONDS_PER_DAY
 from service.gateways.plant_state.following import REFRESH_S, SILENCE_S
-from service.storage import Repository, connect
-from testing.not_installed import not_installed
+from service.storage import Repository
 from testing.service.conditions import FAULT, HEALTHY, UNKNOWN, tell
-from testing.service.gateways import running_gateways
-from testing.service.plants import NOW_NS, SECOND_NS, two_motor_plant
-from testing.service.postgresql import INSTALLED, binaries, serving_postgresql
+from testing.service.gateways import healthy_plant_on_postgresql, running_gateways
+from testing.service.plants import NOW_NS, SECOND_NS
 from testing.waiting import eventually, wait_until
 from tests.service.gateways.modbus.test_modbus import FAN, PUMP, figures
 from tests.service.gateways.settings import port_of, settings_of
@@ -117,15 +115,7 @@ def test_a_good_value_gets_stale_without_anything_being_written(
 
 @pytest.mark.campaign
 def test_a_database_that_falls_silent_leaves_nothing_good_nor_current(tmp_path: Path) -> None:
-    folder = binaries()
-    if folder is None:
-        not_installed(f"no PostgreSQL server in {INSTALLED}: apt-get install postgresql")
-    with serving_postgresql(folder) as postgresql, postgresql.database() as url:
-        engine = connect(url)
-        repository = Repository(engine)
-        repository.sync_plant(two_motor_plant())
-        tell(repository, HEALTHY)
-        engine.dispose()
+    with healthy_plant_on_postgresql() as (postgresql, url):
         chosen = settings_of("modbus", tmp_path).model_copy(update={"database_url": url})
         port = port_of(chosen)
 

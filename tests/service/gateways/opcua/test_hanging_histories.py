@@ -14,12 +14,9 @@ from service.gateways.opcua.history import READS_AT_ONCE
 from service.gateways.plant_state.following import SILENCE_S
 from service.storage import Repository, connect
 from service.storage.records import Role
-from testing.not_installed import not_installed
 from testing.ports import free_port
-from testing.service.conditions import HEALTHY, tell
-from testing.service.gateways import running_gateways
-from testing.service.plants import two_motor_plant
-from testing.service.postgresql import INSTALLED, PostgresServer, binaries, serving_postgresql
+from testing.service.gateways import healthy_plant_on_postgresql, running_gateways
+from testing.service.postgresql import PostgresServer
 from tests.service.gateways.opcua.test_history_reads import FAR, LEVEL, LONG_AGO, details_of
 from tests.service.gateways.opcua.test_logins import client_of
 from tests.service.gateways.opcua.test_opcua import PUMP, add_user, node
@@ -94,15 +91,9 @@ async def work(settings: Settings, postgresql: PostgresServer) -> None:
 
 @pytest.mark.campaign
 def test_histories_that_hang_leave_no_value_good(tmp_path: Path) -> None:
-    folder = binaries()
-    if folder is None:
-        not_installed(f"no PostgreSQL server in {INSTALLED}: apt-get install postgresql")
-    with serving_postgresql(folder) as postgresql, postgresql.database() as url:
+    with healthy_plant_on_postgresql() as (postgresql, url):
         engine = connect(url)
-        repository = Repository(engine)
-        repository.sync_plant(two_motor_plant())
-        add_user(repository, "vera", Role.VIEWER)
-        tell(repository, HEALTHY)
+        add_user(Repository(engine), "vera", Role.VIEWER)
         engine.dispose()
         table = {"opcua": {"port": free_port(), "anonymous": True, "unencrypted": True}}
         settings = Settings(
