@@ -59,11 +59,11 @@ class Subscribed:
 
 
 async def _variables(node: Node) -> list[Node]:
-    """The variables of a node, and of the objects below it."""
-    found = list(await node.get_variables())
+    """The variables of a node, and of the objects below it, each once."""
+    found = {one.nodeid: one for one in await node.get_variables()}
     for child in await node.get_children(nodeclassmask=ua.NodeClass.Object):
-        found += await _variables(child)
-    return found
+        found |= {one.nodeid: one for one in await _variables(child)}
+    return list(found.values())
 
 
 def main() -> None:

@@ -11,24 +11,21 @@ from typing import Final
 import structlog
 from asyncua import ua
 from asyncua.crypto.validator import CertificateValidator, CertificateValidatorOptions
-from asyncua.server.event_generator import EventGenerator
 
 from mms import CredentialFileError, read_secret
 from service.configuration.gateways.opcua import OpcUaSettings
 from service.gateways.context import GatewayContext
 from service.gateways.opcua.account_watch import AccountWatch
-from service.gateways.opcua.address_space import OURS, PlantNodes
+from service.gateways.opcua.address_space import PlantNodes
+from service.gateways.opcua.alarm_events import AlarmEvents
 from service.gateways.opcua.certificate import own_certificate
-from service.gateways.opcua.history import TrendHistory, tell_capabilities, utc
+from service.gateways.opcua.history import TrendHistory, tell_capabilities
 from service.gateways.opcua.limits import set_limits
 from service.gateways.opcua.methods import PlantMethods
 from service.gateways.opcua.transport import BoundedServer
 from service.gateways.opcua.trusted_clients import TrustedClients
 from service.gateways.opcua.users import PlantRules, ServiceUsers
-from service.gateways.opcua.values import SEVERITIES
-from service.gateways.plant_state.figures import PlantChange
 from service.process.installation import installation_id
-from service.storage.records import Alarm
 
 log = structlog.get_logger(__name__)
 
@@ -39,13 +36,6 @@ ENCRYPTED: Final = (
     ua.SecurityPolicyType.Basic256Sha256_SignAndEncrypt,
     ua.SecurityPolicyType.Aes128Sha256RsaOaep_SignAndEncrypt,
     ua.SecurityPolicyType.Aes256Sha256RsaPss_SignAndEncrypt,
-)
-EVENT_FIELDS: Final = (
-    ("Alarm", ua.VariantType.String),
-    ("Motor", ua.VariantType.String),
-    ("Kind", ua.VariantType.String),
-    ("State", ua.VariantType.String),
-    ("Standing", ua.VariantType.Boolean),
 )
 
 
@@ -74,15 +64,16 @@ def _wait_for_key(context: GatewayContext, key: Path) -> None:
 async def _serve(context: GatewayContext, settings: OpcUaSettings) -> None:
     trusted = None if settings.trusted is None else TrustedClients(settings.trusted)
     users = ServiceUsers(context.repository, context.settings.access, anonymous=settings.anonymous)
-    server = await _server(context, settings, users, trusted)
-    nodes = PlantNodes(server)
+    uri = f"urn:statorwatch:{installation_id(context.settings.data_directory)}"
+    server = await _server(context, settings, uri, users, trusted)
+    nodes = PlantNodes(server, uri)
     await nodes.begin()
     methods = PlantMethods(server, context.repository, context.settings)
     await methods.begin()
     history = TrendHistory(server.iserver, context.repository, nodes.histories)
     server.iserver.history_manager = history
     await tell_capabilities(server)
-    events = await _events(server)
+    events = await AlarmEvents.of(server, nodes)
     follower = context.follower()
     # Of its own: values have to stop being good while all other threads wait for a database that hangs.
     following = ThreadPoolExecutor(1, "OPC UA follower")
@@ -96,7 +87,7 @@ async def _serve(context: GatewayContext, settings: OpcUaSettings) -> None:
             if change is not None:
                 await nodes.tell(change)
             if server.bserver is not None and change is not None:
-                await _tell_alarms(nodes, events, change)
+                await events.tell(change)
             is_known = is_known or change is not None
             if server.bserver is None and is_known:
                 context.tell(await _begun(settings, server))
@@ -116,10 +107,12 @@ async def _serve(context: GatewayContext, settings: OpcUaSettings) -> None:
 
 
 async def _server(
-    context: GatewayContext, settings: OpcUaSettings, users: ServiceUsers, trusted: TrustedClients | None
+    context: GatewayContext,
+    settings: OpcUaSettings,
+    uri: str,
+    users: ServiceUsers,
+    trusted: TrustedClients | None,
 ) -> BoundedServer:
-    data_directory = context.settings.data_directory
-    uri = f"urn:statorwatch:{installation_id(data_directory)}"
     server = BoundedServer(users)
     server.product_uri, server.manufacturer_name = "urn:statorwatch", "StatorWatch"
     gc.disable()  # the objects of the standard's nodes stay for good: it is in vain to look through them
@@ -135,7 +128,7 @@ async def _server(
     server.limits.max_message_size = LARGEST_MESSAGE
     certificate, key = settings.certificate, settings.key
     if certificate is None or key is None:
-        certificate, key = own_certificate(data_directory, uri, str(settings.bind_address))
+        certificate, key = own_certificate(context.settings.data_directory, uri, str(settings.bind_address))
     await server.load_certificate(certificate)
     await server.load_private_key(key)
     if trusted is not None:
@@ -163,29 +156,3 @@ async def _begun(settings: OpcUaSettings, server: BoundedServer) -> str | None:
     await server.start()
     log.info("serving OPC UA", port=settings.port)
     return None
-
-
-async def _events(server: BoundedServer) -> EventGenerator:
-    index = await server.get_namespace_index(OURS)
-    kind = await server.create_custom_event_type(
-        index, "MotorAlarmEventType", ua.ObjectIds.BaseEventType, list(EVENT_FIELDS)
-    )
-    return await server.get_event_generator(kind)
-
-
-async def _tell_alarms(nodes: PlantNodes, events: EventGenerator, change: PlantChange) -> None:
-    """Send an event for each alarm that is new, has changed, or is over."""
-    for alarm in change.alarms:
-        await _send(nodes, events, alarm, str(alarm.state))
-    for gone in change.alarms_gone:
-        await _send(nodes, events, change.before.alarms[gone], "normal")
-
-
-async def _send(nodes: PlantNodes, events: EventGenerator, alarm: Alarm, state: str) -> None:
-    event = events.event
-    event.Alarm, event.Motor, event.Kind = alarm.id, alarm.motor or "", str(alarm.kind)
-    event.State, event.Standing = state, alarm.standing and state != "normal"
-    event.Severity = SEVERITIES[alarm.priority]
-    event.SourceNode, event.SourceName = nodes.source_of(alarm), alarm.place
-    event.Time = utc(alarm.changed_ns)
-    await events.trigger(message=alarm.reason)

@@ -12,7 +12,7 @@ from sqlalchemy.exc import SQLAlchemyError
 
 from service.access.permissions import Permission
 from service.configuration.settings import Settings
-from service.gateways.opcua.address_space import OURS
+from service.gateways.opcua.namespaces import OURS
 from service.gateways.opcua.users import CALLER, PlantUser, actor_of, has_changed
 from service.gateways.opcua.worker_threads import WorkerThreads
 from service.storage import NotFoundError, Repository, StorageError

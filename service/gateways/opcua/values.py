@@ -6,6 +6,7 @@ from typing import Final
 
 from asyncua import ua
 
+from service.gateways.opcua.companion_types import STATES
 from service.gateways.opcua.history import EPOCH, utc
 from service.gateways.plant_state.device_health import DeviceHealth
 from service.gateways.plant_state.figures import MotorFigures, PlantState, Quality, RelayFigures
@@ -22,12 +23,12 @@ HEALTHS: Final[Mapping[DeviceHealth, int]] = {
 }
 """DeviceHealthEnumeration of OPC 10000-100."""
 
-ITEM_STATES: Final[Mapping[RunningState, tuple[str, int]]] = {
-    RunningState.UNKNOWN: ("NotAvailable", 5005),
-    RunningState.RUNNING: ("Executing", 5006),
-    RunningState.STANDING: ("NotExecuting", 5007),
+ITEM_STATES: Final[Mapping[RunningState, str]] = {
+    RunningState.UNKNOWN: "NotAvailable",
+    RunningState.RUNNING: "Executing",
+    RunningState.STANDING: "NotExecuting",
 }
-"""Names and nodes of the states of MachineryItemState (OPC 40001-1)."""
+"""States of MachineryItemState (OPC 40001-1)."""
 
 STATUS: Final[Mapping[Quality, int]] = {
     Quality.GOOD: ua.StatusCodes.Good,
@@ -128,7 +129,8 @@ def health_value(health: DeviceHealth, quality: Quality, time_ns: int | None) ->
 
 def item_state_values(motor: MotorFigures, namespace: int) -> tuple[ua.DataValue, ua.DataValue]:
     """Return CurrentState and its Id. namespace: index of that of OPC UA for Machinery."""
-    name, node = ITEM_STATES[motor.running]
+    name = ITEM_STATES[motor.running]
+    node, _, _ = STATES[name]
     text = ua.Variant(ua.LocalizedText(name, "en"), ua.VariantType.LocalizedText)
     place = ua.Variant(ua.NodeId(node, namespace), ua.VariantType.NodeId)
     state, of_node = (_told_always(one, motor.running_quality, motor.running_ns) for one in (text, place))
@@ -148,6 +150,13 @@ def relay_value(text: str, relay: RelayFigures) -> ua.DataValue:
         StatusCode=ua.StatusCode(STATUS[relay.quality]),
         SourceTimestamp=_time(relay.changed_ns),
     )
+
+
+def text_value(text: str, kind: ua.VariantType) -> ua.DataValue:
+    """Return a text or a localised text; an empty one is not known."""
+    if not text:
+        return ua.DataValue(StatusCode=ua.StatusCode(ua.StatusCodes.BadNoData))
+    return ua.DataValue(ua.Variant(ua.LocalizedText(text) if kind is not TEXT else text, kind))
 
 
 def _time(time_ns: int | None) -> object:

@@ -20,7 +20,7 @@ from testing.service.gateways import running_gateways
 from testing.service.iec104_master import Master
 from testing.waiting import wait_until
 from tests.service.gateways.modbus import test_modbus as modbus
-from tests.service.gateways.opcua import test_opcua as opcua
+from tests.service.gateways.opcua import clients as opcua
 from tests.service.gateways.settings import port_of, settings_of
 
 Found = TypeVar("Found")

@@ -27,7 +27,7 @@ from tests.service.gateways.iec61850.test_iec61850 import PUMP as LOGICAL_DEVICE
 from tests.service.gateways.modbus.test_modbus import PUMP as REGISTER
 from tests.service.gateways.modbus.test_modbus import figures
 from tests.service.gateways.mqtt.test_plain_topics import PUMP as TOPIC
-from tests.service.gateways.opcua.test_opcua import PUMP as NODE
+from tests.service.gateways.opcua.clients import PUMP as NODE
 
 ALARM, FAULT = 3, 3
 """EEHealth by IEC 61850-7-4, and the state in the registers."""

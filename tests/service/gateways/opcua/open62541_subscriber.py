@@ -1,4 +1,4 @@
-"""A client of open62541 (the package o6) that is told of changes, in a process of its own.
+"""A client of open62541 (the package o6) that is told of changes and events, in a process of its own.
 
 Arguments: the folder of the package, address, certificate, key, user. The first line of the standard input is
 the password; the client ends when the input does. Prints a line of JSON for each thing that it is told.
@@ -6,6 +6,7 @@ the password; the client ends when the input does. Prints a line of JSON for eac
 
 import json
 import sys
+from collections.abc import Callable
 from typing import Any
 
 folder, address, certificate, key, user = sys.argv[1:6]
@@ -14,6 +15,8 @@ sys.path.insert(0, folder)
 import o6  # noqa: E402 - found in that folder only
 
 OURS = 2
+PUMP = "motor/PUMP-A1"
+EVENT = "SELECT /EventId, /SourceName, /SourceNode, /Time, /Message, /Severity"
 
 
 def say(what: str, told: object) -> None:
@@ -22,18 +25,29 @@ def say(what: str, told: object) -> None:
     sys.stdout.flush()
 
 
-def state(value: Any) -> None:
-    """Tell of the motor's state."""
-    say("State", value)
+def node(path: str) -> Any:
+    """The node of a path in the plant's namespace."""
+    return o6.NodeId(f"ns={OURS};s={path}")
 
 
-def health(value: Any) -> None:
-    """Tell of the motor's health."""
-    say("DeviceHealth", int(value))
+def telling(what: str) -> Callable[[Any], None]:
+    """What tells value, status and source time of a variable."""
+
+    def tell(told: Any) -> None:
+        value = told.value
+        shown = value if isinstance(value, str) else int(value)
+        say(what, [shown, int(told.status), str(told.sourceTimestamp)])
+
+    return tell
+
+
+def event(told: Any) -> None:
+    """Tell of an event."""
+    say("event", {path.removeprefix("/"): str(value) for path, value in told.items()})
 
 
 def main() -> None:
-    """Subscribe to state and health of PUMP-A1."""
+    """Subscribe to state and health of PUMP-A1, and to its events."""
     client = o6.Client(
         address,
         certificate=certificate,
@@ -47,9 +61,10 @@ def main() -> None:
     client.connect(createDefaultSubscription=False)
     try:
         subscription = client.createSubscription(publishingInterval=100.0)
-        for name, told in (("State", state), ("DeviceHealth", health)):
-            variable = o6.NodeId(f"ns={OURS};s=motor/PUMP-A1/{name}")
-            client.monitor(variable, told, subscription=subscription)
+        for name in ("State", "DeviceHealth"):
+            variable = node(f"{PUMP}/{name}")
+            client.monitor(variable, telling(name), valueOnly=False, subscription=subscription)
+        client.monitorEvent(node(f"{PUMP}/Notifications"), event, EVENT, subscription=subscription)
         say("ready", None)
         sys.stdin.read()
     finally:

@@ -16,7 +16,7 @@ from testing.service.accounts import TESTS
 from testing.service.conditions import HEALTHY, tell
 from testing.service.gateways import running_gateways
 from testing.service.plants import NOW_NS
-from tests.service.gateways.opcua.test_opcua import PUMP, add_user, encrypted, node
+from tests.service.gateways.opcua.clients import PUMP, add_user, encrypted, node
 from tests.service.gateways.settings import settings_of
 
 Change = Callable[[Repository], object]

@@ -17,9 +17,9 @@ from service.storage.records import Role
 from testing.ports import free_port
 from testing.service.gateways import healthy_plant_on_postgresql, running_gateways
 from testing.service.postgresql import PostgresServer
+from tests.service.gateways.opcua.clients import PUMP, add_user, node
 from tests.service.gateways.opcua.test_history_reads import FAR, LEVEL, LONG_AGO, details_of
 from tests.service.gateways.opcua.test_logins import client_of
-from tests.service.gateways.opcua.test_opcua import PUMP, add_user, node
 
 CLIENTS = 40
 LATER_S = 4.0

@@ -22,7 +22,7 @@ from testing.service.diagnosed import add_diagnosed
 from testing.service.gateways import running_gateways
 from testing.service.job_runner import register_runner
 from testing.service.plants import NOW_NS, SECOND_NS, fault, undiagnosable
-from tests.service.gateways.opcua.test_opcua import PUMP, looking, node
+from tests.service.gateways.opcua.clients import PUMP, looking, node
 from tests.service.gateways.settings import settings_of
 
 LEVEL, LOAD = f"{PUMP}/FaultLevel", f"{PUMP}/Load"

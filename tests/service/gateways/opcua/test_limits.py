@@ -13,9 +13,9 @@ from service.gateways.opcua import limits
 from service.storage import Repository
 from testing.service.conditions import HEALTHY, tell
 from testing.service.gateways import running_gateways
+from tests.service.gateways.opcua.clients import PUMP, node
 from tests.service.gateways.opcua.test_logins import client_of
 from tests.service.gateways.opcua.test_lost_connections import Heard
-from tests.service.gateways.opcua.test_opcua import PUMP, node
 from tests.service.gateways.opcua.test_sessions import refused, state_of
 from tests.service.gateways.settings import settings_of
 

@@ -17,7 +17,7 @@ from service.storage import Repository
 from service.storage.records import Role
 from testing.service.conditions import HEALTHY, tell
 from testing.service.gateways import running_gateways
-from tests.service.gateways.opcua.test_opcua import PASSWORD, PUMP, add_user, address_of, node
+from tests.service.gateways.opcua.clients import PASSWORD, PUMP, add_user, address_of, node
 from tests.service.gateways.settings import settings_of
 
 STATE = f"{PUMP}/State"

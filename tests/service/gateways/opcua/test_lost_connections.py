@@ -14,7 +14,7 @@ from testing.service.conditions import FAULT, HEALTHY, tell
 from testing.service.gateways import running_gateways
 from testing.tcp_proxy import Proxy
 from testing.waiting import eventually
-from tests.service.gateways.opcua.test_opcua import PUMP, address_of, node, value
+from tests.service.gateways.opcua.clients import PUMP, address_of, node, value
 from tests.service.gateways.settings import port_of, settings_of
 
 PUBLISHING_MS = 100

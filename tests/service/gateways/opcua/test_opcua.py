@@ -8,7 +8,7 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Awaitable, Callable, Iterator
+from collections.abc import Iterator
 from contextlib import ExitStack, suppress
 from datetime import UTC, datetime
 from pathlib import Path
@@ -16,9 +16,7 @@ from typing import Any
 
 import pytest
 from asyncua import Client, ua
-from asyncua.crypto.security_policies import SecurityPolicyBasic256Sha256
 
-from service.access.passwords import hashed
 from service.configuration.gateways.opcua import OpcUaSettings
 from service.configuration.settings import Settings
 from service.gateways.opcua.certificate import own_certificate
@@ -30,7 +28,6 @@ from service.storage.records import Role
 from service.storage.states import AlarmKind, AlarmState, LinkState
 from testing.not_installed import not_installed
 from testing.ports import LOOPBACK
-from testing.service.accounts import TESTS
 from testing.service.conditions import FAULT, HEALTHY, tell
 from testing.service.diagnosed import add_diagnosed
 from testing.service.gateways import running_gateways
@@ -38,26 +35,19 @@ from testing.service.job_runner import register_runner
 from testing.service.links import set_link_state
 from testing.service.plants import NOW_NS, SECOND_NS, fault
 from testing.waiting import eventually
+from tests.service.gateways.opcua.clients import (
+    PASSWORD,
+    PEER,
+    PUMP,
+    add_user,
+    address_of,
+    done,
+    encrypted,
+    looking,
+    node,
+    value,
+)
 from tests.service.gateways.settings import port_of, settings_of
-
-PASSWORD = "correct horse battery"  # noqa: S105 - of a test's user
-PUMP = "motor/PUMP-A1"
-PEER = Path(sys.prefix) / "open62541"
-"""Where .ci/run installs the other stack's client."""
-
-
-def address_of(settings: Settings) -> str:
-    return f"opc.tcp://{LOOPBACK}:{port_of(settings)}/"
-
-
-def add_user(repository: Repository, name: str, role: Role, *, now_ns: int = NOW_NS) -> None:
-    repository.add_user(name, {role}, password=hashed(PASSWORD), by=TESTS, now_ns=now_ns)
-
-
-def done(repository: Repository) -> list[tuple[str, str, str]]:
-    """What the audit trail has: action, by whom, from where."""
-    with repository.audit_trail() as trail:
-        return [(one.action, one.actor, one.origin) for one in trail.entries()]
 
 
 @pytest.fixture
@@ -66,49 +56,6 @@ def open_settings(repository: Repository, tmp_path: Path) -> Iterator[Settings]:
     chosen = settings_of("opcua", tmp_path, anonymous=True, unencrypted=True)
     with running_gateways(chosen):
         yield chosen
-
-
-async def encrypted(settings: Settings, user: str | None = None, password: str = PASSWORD) -> Client:
-    """A client with a certificate of its own, not connected yet."""
-    folder = settings.data_directory / "client"
-    folder.mkdir(exist_ok=True)
-    certificate, key = own_certificate(folder, "urn:statorwatch:test-client", LOOPBACK)
-    client = Client(address_of(settings), timeout=60)
-    client.application_uri = "urn:statorwatch:test-client"
-    if user is not None:
-        client.set_user(user)
-        client.set_password(password)
-    await client.set_security(
-        SecurityPolicyBasic256Sha256,
-        certificate=str(certificate),
-        private_key=str(key),
-        server_certificate=str(settings.data_directory / "opcua-certificate.der"),
-        mode=ua.MessageSecurityMode.SignAndEncrypt,
-    )
-    return client
-
-
-def looking(settings: Settings, look: Callable[[Client], Awaitable[Any]]) -> Any:
-    """What a client that is nobody sees."""
-
-    async def ask() -> Any:
-        async with Client(address_of(settings)) as client:
-            return await look(client)
-
-    return asyncio.run(ask())
-
-
-def node(client: Client, path: str) -> Any:
-    return client.get_node(f"ns=2;s={path}")
-
-
-def value(settings: Settings, path: str) -> Any:
-    """Value, status and time of a variable."""
-
-    async def read(client: Client) -> Any:
-        return await node(client, path).read_data_value(raise_on_bad_status=False)
-
-    return looking(settings, read)
 
 
 def test_a_fault_is_a_failure_with_the_time_of_its_record(

@@ -5,23 +5,35 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
+from datetime import UTC, datetime
 from pathlib import Path
 from threading import Thread
 from typing import IO, Any
 
+import pytest
+from asyncua import ua
+
+from core.units import NANOSECONDS_PER_DAY
+from scl import Address
 from service.configuration.settings import Settings
 from service.gateways.opcua.certificate import own_certificate
 from service.storage import Repository
 from service.storage.records import Role
 from testing.not_installed import not_installed
-from testing.ports import LOOPBACK
+from testing.ports import LOOPBACK, free_port
 from testing.service.conditions import FAULT, HEALTHY, tell
 from testing.service.gateways import running_gateways
+from testing.service.plants import NOW_NS, SECOND_NS
+from testing.tcp_proxy import Proxy
 from testing.waiting import eventually, wait_until
-from tests.service.gateways.opcua.test_opcua import PASSWORD, PEER, add_user, address_of
-from tests.service.gateways.settings import settings_of
+from tests.service.gateways.opcua.clients import PASSWORD, PEER, add_user, address_of
+from tests.service.gateways.settings import port_of, settings_of
 
 MOST_S = 60.0
+GOOD, UNCERTAIN = ua.StatusCodes.Good, ua.StatusCodes.UncertainLastUsableValue
+OLD_NS = NOW_NS - 4000 * NANOSECONDS_PER_DAY
+"""More days ago than the settings let a condition be without becoming stale."""
 
 
 class Subscriber:
@@ -52,12 +64,12 @@ class Subscriber:
 
 
 @contextmanager
-def subscriber(settings: Settings, folder: Path) -> Iterator[Subscriber]:
-    """A client of open62541 that has subscribed as the user vera."""
+def subscriber(settings: Settings, folder: Path, address: str | None = None) -> Iterator[Subscriber]:
+    """A client of open62541 that has subscribed as the user vera; by another address than the server's."""
     folder.mkdir()
     certificate, key = own_certificate(folder, "urn:statorwatch:test-client", LOOPBACK)
     script = Path(__file__).with_name("open62541_subscriber.py")
-    command = [sys.executable, script, PEER, address_of(settings), certificate, key, "vera"]
+    command = [sys.executable, script, PEER, address or address_of(settings), certificate, key, "vera"]
     process = subprocess.Popen(
         [str(word) for word in command],
         stdin=subprocess.PIPE,
@@ -81,17 +93,70 @@ def subscriber(settings: Settings, folder: Path) -> Iterator[Subscriber]:
         process.stdout.close()
 
 
-def test_open62541_is_told_of_a_state_that_changes(repository: Repository, tmp_path: Path) -> None:
+@pytest.fixture
+def peer() -> None:
+    """The other stack has to be installed."""
     if not PEER.exists():
         not_installed(f"no open62541: python -m pip install --no-deps --target {PEER} o6==2.2.0")
+
+
+def states(client: Subscriber) -> list[tuple[str, int]]:
+    """The states that it was told, with the status of each."""
+    return [(value, status) for value, status, _ in client.told("State")]
+
+
+@pytest.mark.usefixtures("peer")
+def test_open62541_is_told_of_a_state_that_changes(repository: Repository, tmp_path: Path) -> None:
     add_user(repository, "vera", Role.VIEWER)
     tell(repository, HEALTHY)
     chosen = settings_of("opcua", tmp_path)
     with running_gateways(chosen), subscriber(chosen, tmp_path / "client") as client:
-        assert eventually(lambda: client.told("State") == ["healthy"]), client.lines
-        assert eventually(lambda: client.told("DeviceHealth") == [0]), client.lines
+        assert eventually(lambda: states(client) == [("healthy", GOOD)]), client.lines
+        assert eventually(lambda: client.told("DeviceHealth")[0][:2] == [0, GOOD]), client.lines
         tell(repository, FAULT)
-        assert eventually(lambda: client.told("State") == ["healthy", "fault"]), client.lines
-        assert eventually(lambda: client.told("DeviceHealth") == [0, 1]), client.lines
+        assert eventually(lambda: states(client) == [("healthy", GOOD), ("fault", GOOD)]), client.lines
+        assert eventually(lambda: [one[0] for one in client.told("DeviceHealth")] == [0, 1]), client.lines
+        (_, _, told_at) = client.told("State")[-1]
+        assert datetime.fromisoformat(told_at) == datetime.fromtimestamp(NOW_NS // SECOND_NS, UTC)
+        tell(repository, replace(FAULT, as_of_ns=OLD_NS))
+        assert eventually(lambda: states(client)[2:] == [("fault", UNCERTAIN)]), client.lines
         assert client.end() == 0, client.lines
-    assert client.told("State") == ["healthy", "fault"]
+    assert len(states(client)) == 3
+
+
+@pytest.mark.usefixtures("peer")
+def test_open62541_is_told_of_a_motors_alarm_as_an_event(repository: Repository, tmp_path: Path) -> None:
+    add_user(repository, "vera", Role.VIEWER)
+    chosen = settings_of("opcua", tmp_path)
+    with running_gateways(chosen), subscriber(chosen, tmp_path / "client") as client:
+        tell(repository, FAULT)
+        assert eventually(lambda: client.told("event")), client.lines
+        assert client.end() == 0, client.lines
+    (event, *_) = client.told("event")
+    (alarm,) = repository.open_alarms(motor="PUMP-A1", limit=5).items
+    assert (event["SourceName"], event["Message"]) == (alarm.place, alarm.reason)
+    assert event["SourceNode"].endswith(";s=motor/PUMP-A1")
+    changed = datetime.fromtimestamp(alarm.changed_ns // SECOND_NS, UTC)
+    assert datetime.fromisoformat(event["Time"]).replace(microsecond=0) == changed
+
+
+@pytest.mark.usefixtures("peer")
+def test_open62541_whose_connection_was_cut_is_told_of_later_changes(
+    repository: Repository, tmp_path: Path
+) -> None:
+    """It tries to connect again once, and goes on with its session and its subscription."""
+    add_user(repository, "vera", Role.VIEWER)
+    tell(repository, HEALTHY)
+    chosen = settings_of("opcua", tmp_path)
+    own, seen = Address(LOOPBACK, port_of(chosen)), Address(LOOPBACK, free_port())
+    with (
+        running_gateways(chosen),
+        Proxy({"server": (own, seen)}) as proxy,
+        subscriber(chosen, tmp_path / "client", f"opc.tcp://{seen.host}:{seen.port}/") as client,
+    ):
+        assert eventually(lambda: states(client) == [("healthy", GOOD)]), client.lines
+        proxy.cut("server")
+        tell(repository, FAULT)
+        assert eventually(lambda: states(client)[-1] == ("fault", GOOD), MOST_S), "".join(client.lines)
+        assert proxy.links["server"].connections == 1
+        assert client.end() == 0, client.lines

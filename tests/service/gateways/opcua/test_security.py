@@ -24,7 +24,7 @@ from testing.relays.certificates import Identity, identity
 from testing.service.conditions import FAULT, HEALTHY, tell
 from testing.service.gateways import running_gateways, started_gateways
 from testing.waiting import wait_until
-from tests.service.gateways.opcua.test_opcua import PASSWORD, PUMP, add_user, address_of, done, node, value
+from tests.service.gateways.opcua.clients import PASSWORD, PUMP, add_user, address_of, done, node, value
 from tests.service.gateways.settings import settings_of
 
 URI = "urn:statorwatch:test-client"

@@ -12,8 +12,8 @@ from service.storage import Repository
 from service.storage.records import Role
 from testing.service.conditions import HEALTHY, tell
 from testing.service.gateways import running_gateways
+from tests.service.gateways.opcua.clients import PASSWORD, PUMP, add_user, address_of, encrypted, node
 from tests.service.gateways.opcua.test_lost_connections import subscribed
-from tests.service.gateways.opcua.test_opcua import PASSWORD, PUMP, add_user, address_of, encrypted, node
 from tests.service.gateways.settings import settings_of
 
 ENDS_S = 10.0

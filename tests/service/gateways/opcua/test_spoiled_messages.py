@@ -12,7 +12,7 @@ from service.storage import Repository
 from testing.service.conditions import FAULT, tell
 from testing.service.gateways import running_gateways
 from testing.waiting import eventually
-from tests.service.gateways.opcua.test_opcua import PUMP, address_of, node, value
+from tests.service.gateways.opcua.clients import PUMP, address_of, node, value
 from tests.service.gateways.settings import settings_of
 from tests.service.gateways.spoiled_messages import Spoiling, try_spoilings
 

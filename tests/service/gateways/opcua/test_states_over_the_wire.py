@@ -14,10 +14,12 @@ from asyncua import Client, Server, ua
 from core.condition.kinds import Kind, State
 from core.units import NANOSECONDS_PER_DAY
 from service.configuration.settings import Settings
-from service.gateways.opcua.address_space import DEVICES, MACHINERY, OURS, PlantNodes
+from service.gateways.opcua.address_space import PlantNodes
 from service.gateways.opcua.history import utc
+from service.gateways.opcua.namespaces import DEVICES, MACHINERY, OURS
 from service.gateways.plant_state.figures import PlantChange, PlantState
 from service.gateways.plant_state.reading import NOT_JUDGED, read_plant_state
+from service.process.installation import installation_id
 from service.storage import Repository
 from service.storage.states import LinkState
 from testing.service.conditions import DRIFTING, FAULT, HEALTHY, UNKNOWN, tell
@@ -25,7 +27,7 @@ from testing.service.gateways import running_gateways
 from testing.service.links import set_link_state
 from testing.service.plants import NOW_NS, SECOND_NS
 from testing.waiting import eventually
-from tests.service.gateways.opcua.test_opcua import PUMP, looking, node, value
+from tests.service.gateways.opcua.clients import PUMP, looking, node, value
 from tests.service.gateways.settings import settings_of
 
 STATE, LEVEL, AS_OF, HEALTH = (f"{PUMP}/{name}" for name in ("State", "FaultLevel", "AsOf", "DeviceHealth"))
@@ -180,7 +182,7 @@ def test_what_is_known_beside_records_is_uncertain_while_the_database_is_silent(
     async def statuses() -> list[tuple[set[int], set[datetime | None]]]:
         server = Server()
         await server.init()
-        nodes = PlantNodes(server)
+        nodes = PlantNodes(server, "urn:statorwatch:test")
         await nodes.begin()
         found = []
         for before, now in ((PlantState(), known), (known, silent), (silent, again), (again, known)):
@@ -214,24 +216,33 @@ def test_a_motor_that_was_never_judged_waits_for_its_first_values(settings: Sett
 def test_devices_are_known_by_what_the_standards_have(settings: Settings) -> None:
     names, text = ua.VariantType.LocalizedText, ua.VariantType.String
 
-    async def look(client: Client, path: str) -> dict[tuple[str, str], tuple[ua.VariantType, str]]:
+    async def look(client: Client, path: str) -> dict[tuple[str, str], tuple[ua.VariantType, str] | int]:
         namespaces = await client.get_namespace_array()
-        found = {}
+        found: dict[tuple[str, str], tuple[ua.VariantType, str] | int] = {}
         for one in await node(client, f"{path}/Identification").get_properties():
-            name, said = await one.read_browse_name(), (await one.read_data_value()).Value
-            assert await one.read_data_type_as_variant_type() is said.VariantType
-            shown = said.Value.Text if said.VariantType is names else said.Value
-            found[namespaces[name.NamespaceIndex], name.Name] = said.VariantType, shown
+            name, kind = await one.read_browse_name(), await one.read_data_type_as_variant_type()
+            said = await one.read_data_value(raise_on_bad_status=False)
+            place = (namespaces[name.NamespaceIndex], name.Name)
+            if said.StatusCode.value != GOOD:
+                found[place] = said.StatusCode.value
+                continue
+            assert kind is said.Value.VariantType
+            found[place] = kind, said.Value.Value.Text if kind is names else said.Value.Value
         return found
 
+    uri = f"urn:statorwatch:{installation_id(settings.data_directory)}:motor:PUMP-A1"
     assert looking(settings, lambda client: look(client, PUMP)) == {
         (DEVICES, "ComponentName"): (names, "PUMP-A1"),
-        (DEVICES, "ProductInstanceUri"): (text, "urn:statorwatch:plant:motor:PUMP-A1"),
+        (DEVICES, "Manufacturer"): NO_DATA,
+        (DEVICES, "ProductInstanceUri"): (text, uri),
+        (DEVICES, "SerialNumber"): NO_DATA,
         (MACHINERY, "Location"): (text, "FACTORY_A"),
         (OURS, "ProtectedBy"): (text, "A1_SEL710"),
     }
     assert looking(settings, lambda client: look(client, RELAY)) == {
+        (DEVICES, "ComponentName"): (names, "A1_SEL710"),
         (DEVICES, "Manufacturer"): (names, "SEL"),
         (DEVICES, "Model"): (names, "SEL-710"),
+        (DEVICES, "SerialNumber"): NO_DATA,
         (MACHINERY, "Location"): (text, "FACTORY_A"),
     }

@@ -14,9 +14,9 @@ from service.storage import Repository
 from service.storage.records import Role
 from testing.service.conditions import FAULT, HEALTHY, tell
 from testing.service.gateways import running_gateways
+from tests.service.gateways.opcua.clients import PUMP, add_user, encrypted, node
 from tests.service.gateways.opcua.test_logins import client_of
 from tests.service.gateways.opcua.test_lost_connections import Heard
-from tests.service.gateways.opcua.test_opcua import PUMP, add_user, encrypted, node
 from tests.service.gateways.opcua.test_sessions import refused
 from tests.service.gateways.settings import settings_of
 

@@ -1,0 +1,42 @@
+"""A client of another stack, with the published node sets, knows our types and finds the machines by them."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from testing.not_installed import not_installed
+from testing.service.gateways import running_gateways
+from tests.service.gateways.opcua.clients import PEER, address_of
+from tests.service.gateways.settings import settings_of
+
+PARTS = {
+    "Identification": "MachineIdentificationType",
+    "Monitoring": "MonitoringType",
+    "Notifications": "NotificationsType",
+}
+FEWEST = 90
+"""Nodes of the two companion specifications that the server has at least."""
+
+
+@pytest.mark.usefixtures("repository")
+def test_open62541_knows_each_node_of_the_companion_specifications(tmp_path: Path) -> None:
+    if not PEER.exists():
+        not_installed(f"no open62541: python -m pip install --no-deps --target {PEER} o6==2.2.0")
+    chosen = settings_of("opcua", tmp_path, anonymous=True, unencrypted=True)
+    script = Path(__file__).with_name("open62541_types.py")
+    with running_gateways(chosen):
+        peer = subprocess.run(
+            [sys.executable, str(script), str(PEER), address_of(chosen)],
+            capture_output=True,
+            text=True,
+            timeout=100,
+            check=False,
+        )
+    assert peer.returncode == 0, peer.stdout[-2000:] + peer.stderr[-2000:]
+    seen = json.loads(peer.stdout.splitlines()[-1])
+    assert seen["others"] == []
+    assert seen["compared"] >= FEWEST
+    assert seen["machines"] == {"FAN-A2": PARTS, "PUMP-A1": PARTS}
