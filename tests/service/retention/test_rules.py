@@ -17,7 +17,7 @@ from service.cli.app import main
 from service.configuration.retention import RetentionSettings
 from service.configuration.settings import Settings, SettingsError
 from service.recording_store.folder import FolderStore
-from service.retention.batches import Batches
+from service.retention.batches import Batches, Pace
 from service.retention.rules import rules
 from service.storage import Repository, migrate, migrations
 from service.storage.records import SERVICE, Amount, Sample
@@ -27,6 +27,8 @@ from testing.service.job_runner import RUNNER
 from testing.service.plants import NOW_NS, SECOND_NS, fault, healthy, undiagnosable
 
 MOTOR = "PUMP-A1"
+WHOLE = Pace(round_s=600.0)
+"""A round that ends by itself, also where one deletion takes a busy machine twenty seconds."""
 SETTLED_NS = round(SETTLING_S * SECOND_NS)
 
 
@@ -58,7 +60,7 @@ def apply(settings: Settings, repository: Repository, day: float) -> dict[str, t
     """What each rule would delete, and how many it did."""
     now_ns = NOW_NS + round(day * DAY_NS)
     return {
-        rule.setting.removeprefix("retention."): (rule.amount(), rule.forget(Batches()))
+        rule.setting.removeprefix("retention."): (rule.amount(), rule.forget(Batches(WHOLE)))
         for rule in rules(settings, repository, now_ns)
         if rule.days is not None
     }

@@ -5,6 +5,7 @@ import struct
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, suppress
+from pathlib import Path
 
 import pytest
 
@@ -24,6 +25,10 @@ VERSION_AND_BLOCKS = bytes.fromhex("0404 0001 0002")
 """What is answered to who reads the first two registers."""
 UNFINISHED = struct.pack(">HHHB", 1, 0, 254, 1)
 """Head of a request that is never whole."""
+
+
+MOST_TAKEN = 64 * 1024**2
+"""Far more than the system's buffers on both sides take."""
 
 
 @pytest.fixture(scope="module")
@@ -151,3 +156,26 @@ def test_clients_that_asked_once_and_then_drip_give_way_to_others_but_no_client_
         assert time.monotonic() - begun_s >= SILENT_S, "who has just asked keeps the place"
         assert is_ended(crowd[0])
         assert works(link)
+
+
+@pytest.mark.usefixtures("repository")
+def test_a_client_that_takes_no_answers_is_heard_no_more_and_sent_away(tmp_path: Path) -> None:
+    settings = settings_of("modbus", tmp_path, idle_timeout_s=2)
+    requests = reading(0, 125, transaction=1) * 1000
+    sent, waits = 0, 0
+    with (
+        running_gateways(settings),
+        linked(port_of(settings)) as other,
+        linked(port_of(settings)) as deaf,
+    ):
+        deaf.settimeout(0.1)
+        with suppress(ConnectionError):
+            while sent < MOST_TAKEN:
+                try:
+                    sent += deaf.send(requests[sent % len(requests) :])
+                except TimeoutError:
+                    waits += 1
+                    assert works(other)
+        assert waits, "it was sent away at once"
+        assert sent < MOST_TAKEN, "it was heard all the time"
+        assert works(other)
