@@ -27,6 +27,7 @@ class Described:
     node_class: str
     name: tuple[str, str]
     data_type: NodeKey | None
+    is_abstract: bool
     references: frozenset[tuple[int, bool, NodeKey]]
 
 
@@ -52,6 +53,7 @@ def published(path: Path) -> Mapping[NodeKey, Described]:
                 str(one.tag).removeprefix(f"{TAG}UA"),
                 name(one.get("BrowseName", "")),
                 None if data_type is None else key(data_type),
+                one.get("IsAbstract") == "true",
                 frozenset(
                     (key(each.get("ReferenceType"))[1], each.get("IsForward") != "false", key(each.text))
                     for each in one.iterfind(f"{TAG}References/{TAG}Reference")
@@ -77,6 +79,8 @@ async def ours() -> Mapping[NodeKey, Described]:
         node = server.get_node(one)
         name, node_class = await node.read_browse_name(), await node.read_node_class()
         is_variable = node_class is ua.NodeClass.Variable
+        is_type = node_class in (ua.NodeClass.ObjectType, ua.NodeClass.DataType)
+        is_abstract = is_type and (await node.read_attribute(ua.AttributeIds.IsAbstract)).Value.Value
         references = frozenset(
             (int(each.ReferenceTypeId.Identifier), each.IsForward, key(each.NodeId))
             for each in await node.get_references()
@@ -86,6 +90,7 @@ async def ours() -> Mapping[NodeKey, Described]:
             node_class.name,
             (uris[name.NamespaceIndex], name.Name),
             key(await node.read_data_type()) if is_variable else None,
+            is_abstract,
             references,
         )
     return found
@@ -98,7 +103,7 @@ def differences(own: Mapping[NodeKey, Described], sets: Mapping[NodeKey, Describ
         if other is None:
             yield f"{node}: {described.name} is in no node set"
             continue
-        for what in ("node_class", "name", "data_type"):
+        for what in ("node_class", "name", "data_type", "is_abstract"):
             if getattr(described, what) != getattr(other, what):
                 yield f"{node}: {what} is {getattr(described, what)}, published {getattr(other, what)}"
         told = {(kind, to) for kind, is_forward, to in other.references if is_forward}

@@ -1,6 +1,7 @@
 """The nodes of the server: machines and relays, each with its health and its figures."""
 
 from collections.abc import Collection, Mapping, Sequence
+from urllib.parse import quote
 
 from asyncua import Server, ua
 
@@ -52,6 +53,7 @@ class PlantNodes:
         self._uri = uri
         self._told: dict[ua.NodeId, ua.DataValue] = {}
         self._devices: dict[str, Sequence[ua.NodeId]] = {}
+        self._descriptions: dict[str, str] = {}
         self.histories: HistoryNodes = {}
 
     async def begin(self) -> None:
@@ -60,7 +62,7 @@ class PlantNodes:
         await add_companion_types(self._server, spaces)
         self._machines = spaces.node_id(*MACHINES)
         self._relays = spaces.own("relays")
-        self._makes = DeviceNodes(spaces, self._machines, self._relays)
+        self._device_nodes = DeviceNodes(spaces, self._machines, self._relays)
         objects, server = ua.NodeId(ua.ObjectIds.ObjectsFolder), ua.NodeId(ua.ObjectIds.Server)
         machines = spaces.name(MACHINERY, "Machines")
         relays = spaces.name(OURS, "Relays")
@@ -81,12 +83,12 @@ class PlantNodes:
         is_as_current = change.before.is_current == change.now.is_current
         for motor in change.motors if is_as_current else change.now.motors.values():
             if motor_path(motor.name) not in self._devices:
-                await self._add(motor_path(motor.name), self._makes.motor(motor))
+                await self._add(motor_path(motor.name), self._device_nodes.motor(motor))
                 self._keep_histories(motor.name)
             await self._write_motor(motor, change.now)
         for relay in change.relays:
             if relay_path(relay.name) not in self._devices:
-                await self._add(relay_path(relay.name), self._makes.relay(relay))
+                await self._add(relay_path(relay.name), self._device_nodes.relay(relay))
             await self._write_relay(relay)
 
     def source_of(self, alarm: Alarm) -> ua.NodeId:
@@ -123,10 +125,11 @@ class PlantNodes:
         known = {
             "ComponentName": motor.name,
             "Location": motor.site,
-            "ProductInstanceUri": f"{self._uri}:motor:{motor.name}",
+            "ProductInstanceUri": f"{self._uri}:motor:{quote(motor.name, safe='')}",
             "ProtectedBy": motor.relay,
         }
         values |= _identity(path, MACHINE_NAMES, known)
+        await self._describe(path, motor.description)
         await self._write(values, read={f"{path}/{name}" for name in BESIDE_RECORDS})
 
     async def _write_relay(self, relay: RelayFigures) -> None:
@@ -142,10 +145,12 @@ class PlantNodes:
             "Manufacturer": relay.manufacturer,
             "Model": relay.type,
         }
+        await self._describe(path, relay.type)
         await self._write(values | _identity(path, COMPONENT_NAMES, known))
 
     async def _forget(self, path: str) -> None:
         nodes = self._devices.pop(path, ())
+        self._descriptions.pop(path, None)
         if nodes:
             await delete(self._server, nodes, (self._machines, self._relays))
         for known in (self._told, self.histories):
@@ -159,8 +164,20 @@ class PlantNodes:
             told = self._told.get(node_id)
             is_same = told is not None and (told.Value, told.StatusCode) == (value.Value, value.StatusCode)
             if told != value and not (is_same and path in read):
+                await self._put(node_id, ua.AttributeIds.Value, value)
                 self._told[node_id] = value
-                await self._server.write_attribute_value(node_id, value)
+
+    async def _describe(self, path: str, description: str) -> None:
+        if self._descriptions.get(path) != description:
+            text = ua.LocalizedText(description)
+            await self._put(
+                self._spaces.own(path), ua.AttributeIds.Description, ua.DataValue(ua.Variant(text))
+            )
+            self._descriptions[path] = description
+
+    async def _put(self, node: ua.NodeId, attribute: ua.AttributeIds, value: ua.DataValue) -> None:
+        """Write an attribute. The server's own way drops the status of a write that is refused."""
+        (await self._server.iserver.aspace.write_attribute_value(node, attribute, value)).check()
 
 
 def _identity(path: str, names: Sequence[str], known: Mapping[str, str]) -> dict[str, ua.DataValue]:

@@ -12,10 +12,10 @@ from asyncua import ua
 
 from service.gateways.opcua.namespaces import DEVICES, MACHINERY, OURS, STANDARD
 
-Place = tuple[str, int | str]
+NodeKey = tuple[str, int | str]
 """Namespace and identifier of a node."""
 
-NAMES, TEXT = ua.VariantType.LocalizedText, ua.VariantType.String
+LOCALIZED_TEXT, STRING = ua.VariantType.LocalizedText, ua.VariantType.String
 
 HEALTH_ENUMERATION: Final = (DEVICES, 6244)
 HEALTH_NAMES: Final = ("NORMAL", "FAILURE", "CHECK_FUNCTION", "OFF_SPEC", "MAINTENANCE_REQUIRED")
@@ -53,11 +53,11 @@ class ObjectType:
     instances are called (DefaultInstanceBrowseName).
     """
 
-    place: Place
+    place: NodeKey
     name: str
-    supertype: Place
+    supertype: NodeKey
     is_abstract: bool = False
-    interfaces: tuple[Place, ...] = ()
+    interfaces: tuple[NodeKey, ...] = ()
     properties: tuple[Property, ...] = ()
     instance: tuple[int, str, str] | None = None
 
@@ -65,46 +65,46 @@ class ObjectType:
 TYPES: Final = (
     ObjectType((DEVICES, 1005), "FunctionalGroupType", FOLDER_TYPE),
     ObjectType((DEVICES, 15035), "IVendorNameplateType", INTERFACE_TYPE, is_abstract=True, properties=(
-        Property(15036, "Manufacturer", NAMES),
-        Property(15038, "Model", NAMES),
-        Property(15045, "SerialNumber", TEXT),
-        Property(15046, "ProductInstanceUri", TEXT),
+        Property(15036, "Manufacturer", LOCALIZED_TEXT),
+        Property(15038, "Model", LOCALIZED_TEXT),
+        Property(15045, "SerialNumber", STRING),
+        Property(15046, "ProductInstanceUri", STRING),
     )),
     ObjectType((DEVICES, 15048), "ITagNameplateType", INTERFACE_TYPE, is_abstract=True, properties=(
-        Property(15050, "ComponentName", NAMES),
+        Property(15050, "ComponentName", LOCALIZED_TEXT),
     )),
     ObjectType(DEVICE_HEALTH, "IDeviceHealthType", INTERFACE_TYPE, is_abstract=True),
     ObjectType(
         (MACHINERY, 1003), "IMachineryItemVendorNameplateType", (DEVICES, 15035), is_abstract=True,
         properties=(
-            Property(6022, "Manufacturer", NAMES, is_mandatory=True),
-            Property(6024, "SerialNumber", TEXT, is_mandatory=True),
+            Property(6022, "Manufacturer", LOCALIZED_TEXT, is_mandatory=True),
+            Property(6024, "SerialNumber", STRING, is_mandatory=True),
         ),
     ),
     ObjectType(
         (MACHINERY, 1010), "IMachineVendorNameplateType", (MACHINERY, 1003), is_abstract=True,
-        properties=(Property(6023, "ProductInstanceUri", TEXT, is_mandatory=True),),
+        properties=(Property(6023, "ProductInstanceUri", STRING, is_mandatory=True),),
     ),
     ObjectType((MACHINERY, 1011), "IMachineTagNameplateType", (DEVICES, 15048), is_abstract=True, properties=(
-        Property(6028, "Location", TEXT, MACHINERY),
+        Property(6028, "Location", STRING, MACHINERY),
     )),
     ObjectType(
         (MACHINERY, 1004), "MachineryItemIdentificationType", (DEVICES, 1005), is_abstract=True,
         interfaces=((MACHINERY, 1003), (DEVICES, 15048)), instance=(6088, DEVICES, "Identification"),
         properties=(
-            Property(6001, "ProductInstanceUri", TEXT),
-            Property(6002, "Manufacturer", NAMES, is_mandatory=True),
-            Property(6003, "SerialNumber", TEXT, is_mandatory=True),
-            Property(6008, "Model", NAMES),
-            Property(6014, "ComponentName", NAMES),
+            Property(6001, "ProductInstanceUri", STRING),
+            Property(6002, "Manufacturer", LOCALIZED_TEXT, is_mandatory=True),
+            Property(6003, "SerialNumber", STRING, is_mandatory=True),
+            Property(6008, "Model", LOCALIZED_TEXT),
+            Property(6014, "ComponentName", LOCALIZED_TEXT),
         ),
     ),
     ObjectType(
         MACHINE_IDENTIFICATION, "MachineIdentificationType", (MACHINERY, 1004),
         interfaces=((MACHINERY, 1010), (MACHINERY, 1011)), instance=(6030, DEVICES, "Identification"),
         properties=(
-            Property(6015, "ProductInstanceUri", TEXT, is_mandatory=True),
-            Property(6029, "Location", TEXT, MACHINERY),
+            Property(6015, "ProductInstanceUri", STRING, is_mandatory=True),
+            Property(6029, "Location", STRING, MACHINERY),
         ),
     ),
     ObjectType(

@@ -10,14 +10,14 @@ from service.gateways.opcua.companion_types import (
     DEVICE_HEALTH,
     HEALTH_ENUMERATION,
     ITEM_STATE,
+    LOCALIZED_TEXT,
     MACHINE_IDENTIFICATION,
     MONITORING,
     MOTOR,
-    NAMES,
     NOTIFICATIONS,
     RELAY,
-    TEXT,
-    Place,
+    STRING,
+    NodeKey,
 )
 from service.gateways.opcua.namespaces import DEVICES, MACHINERY, OURS, STANDARD, Namespaces
 from service.gateways.opcua.node_items import (
@@ -34,13 +34,13 @@ from service.gateways.opcua.values import HISTORIES, INITIAL, MOTOR_VARIABLES
 from service.gateways.plant_state.figures import MotorFigures, RelayFigures
 
 IDENTIFICATION: Final[Mapping[str, tuple[str, ua.VariantType]]] = {
-    "ComponentName": (DEVICES, NAMES),
-    "Manufacturer": (DEVICES, NAMES),
-    "Model": (DEVICES, NAMES),
-    "ProductInstanceUri": (DEVICES, TEXT),
-    "SerialNumber": (DEVICES, TEXT),
-    "Location": (MACHINERY, TEXT),
-    "ProtectedBy": (OURS, TEXT),
+    "ComponentName": (DEVICES, LOCALIZED_TEXT),
+    "Manufacturer": (DEVICES, LOCALIZED_TEXT),
+    "Model": (DEVICES, LOCALIZED_TEXT),
+    "ProductInstanceUri": (DEVICES, STRING),
+    "SerialNumber": (DEVICES, STRING),
+    "Location": (MACHINERY, STRING),
+    "ProtectedBy": (OURS, STRING),
 }
 """Namespace and type of what a device is known by (OPC 10000-100 and OPC 40001-1); the last one is ours."""
 MACHINE_NAMES: Final = (
@@ -84,7 +84,7 @@ class DeviceNodes:
         )
         status, health = (spaces.own(f"{path}/Monitoring/{name}") for name in ("Status", "Health"))
         nodes = [
-            *self._device(path, self._machines, MOTOR, motor.name, motor.description),
+            *self._device(path, self._machines, MOTOR, motor.name),
             *self._identification(path, MACHINE_IDENTIFICATION, MACHINE_NAMES),
             self._part(monitoring, "Monitoring", node, HAS_ADD_IN, MONITORING),
             self._part(status, "Status", monitoring),
@@ -109,23 +109,24 @@ class DeviceNodes:
         """Return the nodes of a relay."""
         spaces, path = self._spaces, relay_path(relay.name)
         nodes = [
-            *self._device(path, self._relays, RELAY, relay.name, relay.type),
+            *self._device(path, self._relays, RELAY, relay.name),
             *self._identification(path, COMPONENT_IDENTIFICATION, COMPONENT_NAMES),
         ]
         for name in ("Link", "LinkReason"):
             node_id, browse_name = spaces.own(f"{path}/{name}"), spaces.name(OURS, name)
-            value = ua.Variant("", TEXT)
-            nodes.append(variable_item(node_id, browse_name, spaces.own(path), value, ua.NodeId(TEXT.value)))
+            value = ua.Variant("", STRING)
+            nodes.append(
+                variable_item(node_id, browse_name, spaces.own(path), value, ua.NodeId(STRING.value))
+            )
         return nodes, []
 
-    def _device(self, path: str, parent: ua.NodeId, kind: Place, name: str, description: str) -> Nodes:
+    def _device(self, path: str, parent: ua.NodeId, kind: NodeKey, name: str) -> Nodes:
         """Return a device with its health."""
         spaces = self._spaces
         node = spaces.own(path)
         return [
             object_item(
                 node, spaces.name(OURS, name), parent, ORGANIZES, spaces.node_id(*kind),
-                description=description,
             ),
             variable_item(
                 spaces.own(f"{path}/DeviceHealth"), spaces.name(DEVICES, "DeviceHealth"), node,
@@ -133,7 +134,7 @@ class DeviceNodes:
             ),
         ]  # fmt: skip
 
-    def _identification(self, path: str, kind: Place, names: Sequence[str]) -> Nodes:
+    def _identification(self, path: str, kind: NodeKey, names: Sequence[str]) -> Nodes:
         spaces, node = self._spaces, self._spaces.own(f"{path}/Identification")
         nodes = [
             object_item(
@@ -146,7 +147,7 @@ class DeviceNodes:
             nodes.append(
                 variable_item(
                     spaces.own(f"{path}/Identification/{name}"), spaces.name(namespace, name), node,
-                    ua.Variant(ua.LocalizedText("") if variant is NAMES else "", variant),
+                    ua.Variant(ua.LocalizedText("") if variant is LOCALIZED_TEXT else "", variant),
                     ua.NodeId(variant.value), is_property=True,
                 )
             )  # fmt: skip
@@ -158,7 +159,7 @@ class DeviceNodes:
         name: str,
         parent: ua.NodeId,
         reference: int = HAS_COMPONENT,
-        kind: Place | None = None,
+        kind: NodeKey | None = None,
     ) -> ua.AddNodesItem:
         """Return an object of OPC 40001-1; a folder unless it has a type of its own."""
         type_definition = FOLDER if kind is None else self._spaces.node_id(*kind)
@@ -172,7 +173,7 @@ class DeviceNodes:
             self._part(machine, "MachineryItemState", blocks, HAS_ADD_IN, ITEM_STATE),
             variable_item(
                 state, spaces.name(STANDARD, "CurrentState"), machine,
-                ua.Variant(ua.LocalizedText(""), NAMES), ua.NodeId(ua.ObjectIds.LocalizedText),
+                ua.Variant(ua.LocalizedText(""), LOCALIZED_TEXT), ua.NodeId(ua.ObjectIds.LocalizedText),
                 type_definition=ua.ObjectIds.FiniteStateVariableType,
             ),
             variable_item(

@@ -16,6 +16,8 @@ HAS_PROPERTY: Final = ua.ObjectIds.HasProperty
 HAS_SUBTYPE: Final = ua.ObjectIds.HasSubtype
 ORGANIZES: Final = ua.ObjectIds.Organizes
 
+BOTH_WAYS: Final = frozenset(map(ua.NodeId, (HAS_ADD_IN, HAS_COMPONENT)))
+
 FOLDER: Final = ua.NodeId(ua.ObjectIds.FolderType)
 READ: Final = ua.AccessLevel.CurrentRead.mask
 READ_HISTORY: Final = READ | ua.AccessLevel.HistoryRead.mask
@@ -96,7 +98,7 @@ def reference_item(source: ua.NodeId, reference: int, target: ua.NodeId) -> ua.A
 async def add(
     server: Server, nodes: Sequence[ua.AddNodesItem], references: Sequence[ua.AddReferencesItem] = ()
 ) -> None:
-    """Add nodes, then references.
+    """Add nodes, then references; those of what is below something both ways.
 
     Raises
     ------
@@ -105,16 +107,20 @@ async def add(
     """
     for added in await server.iserver.isession.add_nodes(nodes):
         added.StatusCode.check()
-    for status in await server.iserver.isession.add_references(references):
+    both = [*references, *(_inverse(one) for one in references if one.ReferenceTypeId in BOTH_WAYS)]
+    for status in await server.iserver.isession.add_references(both):
         status.check()
 
 
 async def delete(server: Server, nodes: Sequence[ua.NodeId], parents: Sequence[ua.NodeId]) -> None:
     """Delete nodes, and the references of their parents to them.
 
-    The library would look for references to each in all nodes of the server: seconds for a motor among 500.
+    The library would look for references to each in all nodes of the server. It would also leave clients that
+    are told of a value with the last one; they are told that the node is unknown.
     """
     gone = set(nodes)
+    for node in nodes:
+        await _tell_gone(server, node)
     for parent in parents:
         references = await server.get_node(parent).get_references(direction=ua.BrowseDirection.Forward)
         ended = [
@@ -133,6 +139,26 @@ async def delete(server: Server, nodes: Sequence[ua.NodeId], parents: Sequence[u
     items = [ua.DeleteNodesItem(NodeId=one, DeleteTargetReferences=False) for one in nodes]
     for status in await server.iserver.isession.delete_nodes(ua.DeleteNodesParameters(NodesToDelete=items)):
         status.check()
+
+
+async def _tell_gone(server: Server, node: ua.NodeId) -> None:
+    space = server.iserver.aspace
+    value = space[node].attributes.get(ua.AttributeIds.Value)
+    if value is not None and value.datachange_callbacks:
+        unknown = ua.DataValue(StatusCode=ua.StatusCode(ua.StatusCodes.BadNodeIdUnknown))
+        (await space.write_attribute_value(node, ua.AttributeIds.Value, unknown)).check()
+        for handle in tuple(value.datachange_callbacks):
+            space.delete_datachange_callback(handle)
+
+
+def _inverse(one: ua.AddReferencesItem) -> ua.AddReferencesItem:
+    return ua.AddReferencesItem(
+        SourceNodeId=one.TargetNodeId,
+        ReferenceTypeId=one.ReferenceTypeId,
+        IsForward=False,
+        TargetNodeId=one.SourceNodeId,
+        TargetNodeClass=ua.NodeClass.Unspecified,
+    )
 
 
 def _item(

@@ -13,10 +13,10 @@ from service.gateways.opcua.companion_types import (
     HEALTH_ENUMERATION,
     HEALTH_NAMES,
     ITEM_STATE,
+    LOCALIZED_TEXT,
     MONITORING,
-    NAMES,
     STATES,
-    TEXT,
+    STRING,
     TRANSITIONS,
     TYPES,
     Edition,
@@ -47,7 +47,7 @@ async def add_companion_types(server: Server, spaces: Namespaces) -> None:
                 spaces.node_id(DEVICES, 6450),
                 spaces.name(STANDARD, "EnumStrings"),
                 spaces.node_id(*HEALTH_ENUMERATION),
-                ua.Variant([ua.LocalizedText(name) for name in HEALTH_NAMES], NAMES),
+                ua.Variant([ua.LocalizedText(name) for name in HEALTH_NAMES], LOCALIZED_TEXT),
                 ua.NodeId(ua.ObjectIds.LocalizedText),
                 is_property=True,
             )
@@ -69,7 +69,16 @@ def _health_enumeration(spaces: Namespaces) -> ua.AddNodesItem:
         RequestedNewNodeId=spaces.node_id(*HEALTH_ENUMERATION),
         BrowseName=name,
         NodeClass=ua.NodeClass.DataType,
-        NodeAttributes=ua.DataTypeAttributes(DisplayName=ua.LocalizedText(name.Name)),
+        NodeAttributes=ua.DataTypeAttributes(
+            DisplayName=ua.LocalizedText(name.Name),
+            IsAbstract=False,
+            DataTypeDefinition=ua.EnumDefinition(
+                [
+                    ua.EnumField(Value=number, DisplayName=ua.LocalizedText(one), Name=one)
+                    for number, one in enumerate(HEALTH_NAMES)
+                ]
+            ),
+        ),
     )
 
 
@@ -101,7 +110,7 @@ async def _add_type(server: Server, spaces: Namespaces, one: ObjectType) -> None
         )
     for member in one.properties:
         member_id = spaces.node_id(namespace, member.number)
-        initial = ua.Variant(ua.LocalizedText("") if member.kind is NAMES else "", member.kind)
+        initial = ua.Variant(ua.LocalizedText("") if member.kind is LOCALIZED_TEXT else "", member.kind)
         nodes.append(
             variable_item(
                 member_id,
@@ -195,8 +204,8 @@ async def _add_edition(server: Server, spaces: Namespaces, edition: Edition) -> 
     node = spaces.node_id(edition.namespace, edition.number)
     kinds = ua.ObjectIds
     told = (
-        ("NamespaceUri", ua.Variant(edition.namespace, TEXT), kinds.String),
-        ("NamespaceVersion", ua.Variant(edition.version, TEXT), kinds.String),
+        ("NamespaceUri", ua.Variant(edition.namespace, STRING), kinds.String),
+        ("NamespaceVersion", ua.Variant(edition.version, STRING), kinds.String),
         (
             "NamespacePublicationDate",
             ua.Variant(edition.published, ua.VariantType.DateTime),
@@ -204,8 +213,8 @@ async def _add_edition(server: Server, spaces: Namespaces, edition: Edition) -> 
         ),
         ("IsNamespaceSubset", ua.Variant(True, ua.VariantType.Boolean), kinds.Boolean),  # noqa: FBT003
         ("StaticNodeIdTypes", ua.Variant([ua.IdType.Numeric.value], ua.VariantType.Int32), kinds.IdType),
-        ("StaticNumericNodeIdRange", ua.Variant(["1:2147483647"], TEXT), kinds.NumericRange),
-        ("StaticStringNodeIdPattern", ua.Variant("", TEXT), kinds.String),
+        ("StaticNumericNodeIdRange", ua.Variant([], STRING, is_array=True), kinds.NumericRange),
+        ("StaticStringNodeIdPattern", ua.Variant("", STRING), kinds.String),
     )
     nodes = [
         object_item(

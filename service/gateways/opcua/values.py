@@ -6,7 +6,7 @@ from typing import Final
 
 from asyncua import ua
 
-from service.gateways.opcua.companion_types import STATES
+from service.gateways.opcua.companion_types import STATES, STRING
 from service.gateways.opcua.history import EPOCH, utc
 from service.gateways.plant_state.device_health import DeviceHealth
 from service.gateways.plant_state.figures import MotorFigures, PlantState, Quality, RelayFigures
@@ -24,7 +24,6 @@ HEALTHS: Final[Mapping[DeviceHealth, int]] = {
 """DeviceHealthEnumeration of OPC 10000-100."""
 
 ITEM_STATES: Final[Mapping[RunningState, str]] = {
-    RunningState.UNKNOWN: "NotAvailable",
     RunningState.RUNNING: "Executing",
     RunningState.STANDING: "NotExecuting",
 }
@@ -41,11 +40,17 @@ SEVERITIES: Final[Mapping[AlarmPriority, int]] = {
     AlarmPriority.MEDIUM: 500,
     AlarmPriority.LOW: 300,
 }
-DOUBLE, TEXT, TIME = ua.VariantType.Double, ua.VariantType.String, ua.VariantType.DateTime
+DOUBLE, TIME = ua.VariantType.Double, ua.VariantType.DateTime
 FLAG, NUMBER = ua.VariantType.Boolean, ua.VariantType.UInt32
 
-INITIAL: Final[Mapping[ua.VariantType, object]] = {DOUBLE: 0.0, TEXT: "", TIME: EPOCH, FLAG: False, NUMBER: 0}
-"""What a node is made with; its value is written before any client comes."""
+INITIAL: Final[Mapping[ua.VariantType, object]] = {
+    DOUBLE: 0.0,
+    STRING: "",
+    TIME: EPOCH,
+    FLAG: False,
+    NUMBER: 0,
+}
+"""What a node is made with, for the moment until its value is written."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,9 +80,9 @@ def _change_high(motor: MotorFigures) -> float | None:
 
 
 MOTOR_VARIABLES: Final = (
-    MotorVariable("State", TEXT, "healthy, watch, fault or unknown", lambda one: str(one.state)),
-    MotorVariable("Kind", TEXT, "what stands out", lambda one: str(one.kind)),
-    MotorVariable("Phase", TEXT, "phase of shorted turns", lambda one: one.phase),
+    MotorVariable("State", STRING, "healthy, watch, fault or unknown", lambda one: str(one.state)),
+    MotorVariable("Kind", STRING, "what stands out", lambda one: str(one.kind)),
+    MotorVariable("Phase", STRING, "phase of shorted turns", lambda one: one.phase),
     MotorVariable("FaultLevel", DOUBLE, "share of the phase's turns", lambda one: one.mu_f),
     MotorVariable("FaultLevelLow", DOUBLE, "lower end of its 95 % interval", _level_low),
     MotorVariable("FaultLevelHigh", DOUBLE, "upper end of its 95 % interval", _level_high),
@@ -86,15 +91,15 @@ MOTOR_VARIABLES: Final = (
     MotorVariable("ChangeHigh", DOUBLE, "upper end of its 95 % interval", _change_high),
     MotorVariable("DetectionLimit", DOUBLE, "of the latest record", lambda one: one.detection_limit),
     MotorVariable("Load", DOUBLE, "over the rated load", lambda one: one.load_level),
-    MotorVariable("Rotor", TEXT, "watch or fault", lambda one: one.rotor and str(one.rotor)),
+    MotorVariable("Rotor", STRING, "watch or fault", lambda one: one.rotor and str(one.rotor)),
     MotorVariable("Stale", FLAG, "the latest record is too old", lambda one: one.stale),
     MotorVariable("AsOf", TIME, "time of the latest record", lambda one: _time(one.as_of_ns)),
     MotorVariable("Since", TIME, "since when the state is so", lambda one: _time(one.since_ns)),
-    MotorVariable("Advice", TEXT, "what to do", lambda one: one.advice),
-    MotorVariable("Reasons", TEXT, "why", lambda one: "; ".join(one.reasons)),
+    MotorVariable("Advice", STRING, "what to do", lambda one: one.advice),
+    MotorVariable("Reasons", STRING, "why", lambda one: "; ".join(one.reasons)),
     MotorVariable("Alarms", NUMBER, "that call for somebody", lambda one: one.alarms),
-    MotorVariable("Priority", TEXT, "of the most urgent alarm", lambda one: str(one.priority or "")),
-    MotorVariable("QualityReason", TEXT, "why values are not good", lambda one: one.quality_reason),
+    MotorVariable("Priority", STRING, "of the most urgent alarm", lambda one: str(one.priority or "")),
+    MotorVariable("QualityReason", STRING, "why values are not good", lambda one: one.quality_reason),
 )  # fmt: skip
 BESIDE_RECORDS: Final = frozenset({"Stale", "Alarms", "Priority", "QualityReason"})
 """Variables that are no figures of a record: each has the time at which it was read to be so."""
@@ -106,7 +111,7 @@ HISTORIES: Final[Mapping[str, Quantity]] = {"FaultLevel": "mu_f", "Load": "load_
 def motor_value(variable: MotorVariable, motor: MotorFigures, state: PlantState) -> ua.DataValue:
     """Return the value of a motor's variable; one that is not known is bad, or an empty text."""
     value = variable.read(motor)
-    if value is None and variable.kind is TEXT:
+    if value is None and variable.kind is STRING:
         value = ""
     if variable.name in BESIDE_RECORDS:
         quality = Quality.GOOD if state.is_current else Quality.UNCERTAIN
@@ -128,7 +133,16 @@ def health_value(health: DeviceHealth, quality: Quality, time_ns: int | None) ->
 
 
 def item_state_values(motor: MotorFigures, namespace: int) -> tuple[ua.DataValue, ua.DataValue]:
-    """Return CurrentState and its Id. namespace: index of that of OPC UA for Machinery."""
+    """Return CurrentState and its Id. namespace: index of that of OPC UA for Machinery.
+
+    A machine whose relay does not answer may run: NotAvailable would say that it does nothing.
+    """
+    if motor.running is RunningState.UNKNOWN:
+        unknown = ua.DataValue(
+            StatusCode=ua.StatusCode(ua.StatusCodes.BadNoCommunication),
+            SourceTimestamp=_time(motor.running_ns),
+        )
+        return unknown, unknown
     name = ITEM_STATES[motor.running]
     node, _, _ = STATES[name]
     text = ua.Variant(ua.LocalizedText(name, "en"), ua.VariantType.LocalizedText)
@@ -146,7 +160,7 @@ def _told_always(value: ua.Variant, quality: Quality, time_ns: int | None) -> ua
 def relay_value(text: str, relay: RelayFigures) -> ua.DataValue:
     """Return a text about a relay."""
     return ua.DataValue(
-        ua.Variant(text, TEXT),
+        ua.Variant(text, STRING),
         StatusCode=ua.StatusCode(STATUS[relay.quality]),
         SourceTimestamp=_time(relay.changed_ns),
     )
@@ -156,7 +170,7 @@ def text_value(text: str, kind: ua.VariantType) -> ua.DataValue:
     """Return a text or a localised text; an empty one is not known."""
     if not text:
         return ua.DataValue(StatusCode=ua.StatusCode(ua.StatusCodes.BadNoData))
-    return ua.DataValue(ua.Variant(ua.LocalizedText(text) if kind is not TEXT else text, kind))
+    return ua.DataValue(ua.Variant(ua.LocalizedText(text) if kind is not STRING else text, kind))
 
 
 def _time(time_ns: int | None) -> object:

@@ -26,9 +26,15 @@ def test_a_node_set_is_read(tmp_path: Path) -> None:
     path.write_text(NODE_SET)
     assert published(path) == {
         MONITORING: Described(
-            "ObjectType", (MACHINERY, "MonitoringType"), None, frozenset({(45, False, FOLDER_TYPE)})
+            "ObjectType",
+            (MACHINERY, "MonitoringType"),
+            None,
+            is_abstract=False,
+            references=frozenset({(45, False, FOLDER_TYPE)}),
         ),
-        (MACHINERY, 6003): Described("Variable", (DEVICES, "SerialNumber"), (STANDARD, 12), frozenset()),
+        (MACHINERY, 6003): Described(
+            "Variable", (DEVICES, "SerialNumber"), (STANDARD, 12), is_abstract=False, references=frozenset()
+        ),
     }
 
 
@@ -39,6 +45,7 @@ def test_each_difference_is_told() -> None:
     others = {
         "is in no node set": {node: one for node, one in own.items() if node != MONITORING},
         "name is": {**own, MONITORING: replace(known, name=(MACHINERY, "Watching"))},
+        "is_abstract is": {**own, MONITORING: replace(known, is_abstract=True)},
         "node_class is": {**own, MONITORING: replace(known, node_class="Object")},
         "reference 46": {
             **own,

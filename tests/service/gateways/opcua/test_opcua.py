@@ -79,12 +79,13 @@ def test_the_state_of_a_machine_follows_its_relay_and_its_records(
 ) -> None:
     path = f"{PUMP}/MachineryItemState/CurrentState"
 
-    def told() -> tuple[str, int]:
-        return value(open_settings, path).Value.Value.Text, value(
-            open_settings, f"{path}/Id"
-        ).Value.Value.Identifier
+    def told() -> tuple[str, int] | int:
+        state, node_id = (value(open_settings, one) for one in (path, f"{path}/Id"))
+        if state.StatusCode.value != ua.StatusCodes.Good:
+            return int(state.StatusCode.value)
+        return state.Value.Value.Text, node_id.Value.Value.Identifier
 
-    assert told() == ("NotAvailable", 5005)
+    assert told() == ua.StatusCodes.BadNoCommunication
     tell(repository, HEALTHY)
     set_link_state(repository, "A1_SEL710", LinkState.UP, now_ns=NOW_NS, reason=None)
     assert eventually(lambda: told() == ("Executing", 5006))
@@ -93,7 +94,7 @@ def test_the_state_of_a_machine_follows_its_relay_and_its_records(
     assert repository.skip_recording("PUMP-A1", "it stands", due_ns=later_ns, now_ns=later_ns)
     assert eventually(lambda: told() == ("NotExecuting", 5007))
     set_link_state(repository, "A1_SEL710", LinkState.DOWN, now_ns=NOW_NS, reason="no answer")
-    assert eventually(lambda: told() == ("NotAvailable", 5005))
+    assert eventually(lambda: told() == ua.StatusCodes.BadNoCommunication)
 
 
 def test_an_old_condition_is_uncertain(repository: Repository, tmp_path: Path) -> None:
