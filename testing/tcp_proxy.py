@@ -24,6 +24,7 @@ class Link:
         self.own = own
         self.seen = seen
         self.carried_bytes = 0
+        self.accepted = 0
         self.refuses = False
         self.cut_after_bytes: int | None = None
         self.flowing = asyncio.Event()
@@ -56,6 +57,7 @@ class Link:
             self._server.close()
 
     async def _accept(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        self.accepted += 1
         if self.refuses:
             _reset(writer)
             return

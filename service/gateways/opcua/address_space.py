@@ -53,7 +53,6 @@ class PlantNodes:
         self._uri = uri
         self._told: dict[ua.NodeId, ua.DataValue] = {}
         self._devices: dict[str, Sequence[ua.NodeId]] = {}
-        self._descriptions: dict[str, str] = {}
         self.histories: HistoryNodes = {}
 
     async def begin(self) -> None:
@@ -150,7 +149,6 @@ class PlantNodes:
 
     async def _forget(self, path: str) -> None:
         nodes = self._devices.pop(path, ())
-        self._descriptions.pop(path, None)
         if nodes:
             await delete(self._server, nodes, (self._machines, self._relays))
         for known in (self._told, self.histories):
@@ -168,12 +166,8 @@ class PlantNodes:
                 self._told[node_id] = value
 
     async def _describe(self, path: str, description: str) -> None:
-        if self._descriptions.get(path) != description:
-            text = ua.LocalizedText(description)
-            await self._put(
-                self._spaces.own(path), ua.AttributeIds.Description, ua.DataValue(ua.Variant(text))
-            )
-            self._descriptions[path] = description
+        text = ua.DataValue(ua.Variant(ua.LocalizedText(description)))
+        await self._put(self._spaces.own(path), ua.AttributeIds.Description, text)
 
     async def _put(self, node: ua.NodeId, attribute: ua.AttributeIds, value: ua.DataValue) -> None:
         """Write an attribute. The server's own way drops the status of a write that is refused."""

@@ -142,8 +142,9 @@ TRANSITIONS: Final = (
 FIRST_TRANSITION: Final = 5008
 FIRST_TRANSITION_NUMBER: Final = 6042
 """Numbers of the first one's node, and of its property's; the others follow."""
-FOLDERS: Final = {5044: "Status", 5045: "Health"}
-"""Folders of Monitoring that our machines have; the second one has the health of a device."""
+HEALTH_FOLDER: Final = 5045
+FOLDERS: Final = {5044: "Status", HEALTH_FOLDER: "Health"}
+"""Folders of Monitoring that our machines have."""
 
 
 @dataclass(frozen=True, slots=True)

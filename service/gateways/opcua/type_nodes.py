@@ -11,6 +11,7 @@ from service.gateways.opcua.companion_types import (
     FIRST_TRANSITION_NUMBER,
     FOLDERS,
     HEALTH_ENUMERATION,
+    HEALTH_FOLDER,
     HEALTH_NAMES,
     ITEM_STATE,
     LOCALIZED_TEXT,
@@ -150,7 +151,9 @@ async def _add_members(server: Server, spaces: Namespaces) -> None:
     references = [
         _rule(health, is_mandatory=False),
         *(_rule(spaces.node_id(MACHINERY, number), is_mandatory=False) for number in FOLDERS),
-        reference_item(spaces.node_id(MACHINERY, 5045), HAS_INTERFACE, spaces.node_id(*DEVICE_HEALTH)),
+        reference_item(
+            spaces.node_id(MACHINERY, HEALTH_FOLDER), HAS_INTERFACE, spaces.node_id(*DEVICE_HEALTH)
+        ),
     ]
     await add(server, nodes, references)
 

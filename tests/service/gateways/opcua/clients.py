@@ -14,6 +14,7 @@ from service.configuration.settings import Settings
 from service.gateways.opcua.certificate import own_certificate
 from service.storage import Repository
 from service.storage.records import Role
+from testing.not_installed import not_installed
 from testing.ports import LOOPBACK
 from testing.service.accounts import TESTS
 from testing.service.plants import NOW_NS
@@ -23,6 +24,12 @@ PASSWORD = "correct horse battery"  # noqa: S105 - of a test's user
 PUMP = "motor/PUMP-A1"
 PEER = Path(sys.prefix) / "open62541"
 """Where .ci/run installs the other stack's client."""
+
+
+def require_open62541() -> None:
+    """Skip the test where the other stack's client is not installed; fail it in CI."""
+    if not PEER.exists():
+        not_installed(f"no open62541: python -m pip install --no-deps --target {PEER} o6==2.2.0")
 
 
 def address_of(settings: Settings) -> str:

@@ -41,28 +41,37 @@ def settings(repository: Repository, tmp_path: Path) -> Iterator[Settings]:
         yield chosen
 
 
-async def targets(client: Client, of: Any, reference: int) -> list[Any]:
+async def begun() -> tuple[Server, PlantNodes]:
+    """A server in this process, with the types and no devices yet."""
+    server = Server()
+    await server.init()
+    nodes = PlantNodes(server, URI)
+    await nodes.begin()
+    return server, nodes
+
+
+async def targets(of: Any, reference: int) -> list[Any]:
     """The nodes that a node refers to."""
     return list(await of.get_referenced_nodes(refs=reference, direction=ua.BrowseDirection.Forward))
 
 
-async def supertypes(client: Client, kind: Any) -> list[Any]:
+async def supertypes(kind: Any) -> list[Any]:
     """A type, and those that it refines."""
     above = await kind.get_referenced_nodes(refs=KINDS.HasSubtype, direction=ua.BrowseDirection.Inverse)
-    return [kind, *(await supertypes(client, above[0]) if above else ())]
+    return [kind, *(await supertypes(above[0]) if above else ())]
 
 
 async def mandatory_names(client: Client, kind: Any) -> set[tuple[str, str]]:
     """Namespace and name of all that an instance of a type has to have, by its supertypes and interfaces."""
     uris = await client.get_namespace_array()
     found = set()
-    for refined in await supertypes(client, kind):
+    for refined in await supertypes(kind):
         for member in await refined.get_children(refs=KINDS.HasProperty):
-            rules = await targets(client, member, KINDS.HasModellingRule)
+            rules = await targets(member, KINDS.HasModellingRule)
             if [one.nodeid for one in rules] == [ua.NodeId(KINDS.ModellingRule_Mandatory)]:
                 name = await member.read_browse_name()
                 found.add((uris[name.NamespaceIndex], name.Name))
-        for interface in await targets(client, refined, KINDS.HasInterface):
+        for interface in await targets(refined, KINDS.HasInterface):
             found |= await mandatory_names(client, interface)
     return found
 
@@ -71,7 +80,7 @@ async def names(client: Client, of: Any, reference: int) -> dict[tuple[str, str]
     """What a node refers to, by namespace and name."""
     uris = await client.get_namespace_array()
     found = {}
-    for one in await targets(client, of, reference):
+    for one in await targets(of, reference):
         name = await one.read_browse_name()
         found[uris[name.NamespaceIndex], name.Name] = one
     return found
@@ -143,7 +152,7 @@ def test_building_blocks_are_add_ins_of_their_types(settings: Settings) -> None:
         status = await names(client, monitoring[MACHINERY, "Status"], KINDS.HasComponent)
         assert status[MACHINERY, "MachineryItemState"] == found[MACHINERY, "MachineryItemState"]
         health = monitoring[MACHINERY, "Health"]
-        (interface,) = await targets(client, health, KINDS.HasInterface)
+        (interface,) = await targets(health, KINDS.HasInterface)
         assert (await interface.read_browse_name()).Name == "IDeviceHealthType"
         (told,) = (await names(client, health, KINDS.HasComponent)).values()
         assert await told.read_value() == await node(client, f"{PUMP}/DeviceHealth").read_value()
@@ -182,7 +191,7 @@ def test_each_transition_leads_from_one_state_to_another_one(settings: Settings)
         for one in await kind.get_children(refs=KINDS.HasComponent):
             if await type_name(client, one) == "TransitionType":
                 ends = [
-                    (await (await targets(client, one, end))[0].read_browse_name()).Name
+                    (await (await targets(one, end))[0].read_browse_name()).Name
                     for end in (KINDS.FromState, KINDS.ToState)
                 ]
                 found.add(((await one.read_browse_name()).Name, *ends))
@@ -262,10 +271,7 @@ def test_a_motor_that_is_gone_leaves_no_node_behind(repository: Repository) -> N
     )
 
     async def left() -> tuple[set[str], set[str]]:
-        server = Server()
-        await server.init()
-        nodes = PlantNodes(server, URI)
-        await nodes.begin()
+        server, nodes = await begun()
         aspace = server.iserver.aspace._nodes
         before = set(aspace)
         await nodes.tell(PlantChange(PlantState(), known))
@@ -295,11 +301,8 @@ def test_who_follows_a_motor_that_leaves_is_told_that_it_is_gone(repository: Rep
             told.append(data.monitored_item.Value.StatusCode.value)
 
     async def follow() -> None:
-        server = Server()
-        await server.init()
+        server, nodes = await begun()
         server.set_endpoint(f"opc.tcp://{LOOPBACK}:{free_port()}/")
-        nodes = PlantNodes(server, URI)
-        await nodes.begin()
         await nodes.tell(PlantChange(PlantState(), known))
         async with server, Client(server.endpoint.geturl()) as client:
             subscription = await client.create_subscription(20, Heard())
@@ -321,10 +324,7 @@ def test_the_description_of_a_motor_follows_the_plant(repository: Repository) ->
     later = replace(known, motors={**known.motors, "PUMP-A1": replace(pump, description="feeds the boiler")})
 
     async def described() -> list[str]:
-        server = Server()
-        await server.init()
-        nodes = PlantNodes(server, URI)
-        await nodes.begin()
+        server, nodes = await begun()
         found = []
         for before, now in ((PlantState(), known), (known, later)):
             await nodes.tell(PlantChange(before, now))

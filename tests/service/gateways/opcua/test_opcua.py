@@ -26,7 +26,6 @@ from service.recording_store.folder import FolderStore
 from service.storage import Repository
 from service.storage.records import Role
 from service.storage.states import AlarmKind, AlarmState, LinkState
-from testing.not_installed import not_installed
 from testing.ports import LOOPBACK
 from testing.service.conditions import FAULT, HEALTHY, tell
 from testing.service.diagnosed import add_diagnosed
@@ -45,6 +44,7 @@ from tests.service.gateways.opcua.clients import (
     encrypted,
     looking,
     node,
+    require_open62541,
     value,
 )
 from tests.service.gateways.settings import port_of, settings_of
@@ -230,8 +230,7 @@ def test_an_alarm_is_acknowledged_by_who_may(repository: Repository, tmp_path: P
 def test_open62541_reads_encrypted_with_history_and_has_a_motor_recorded(
     repository: Repository, tmp_path: Path
 ) -> None:
-    if not PEER.exists():
-        not_installed(f"no open62541: python -m pip install --no-deps --target {PEER} o6==2.2.0")
+    require_open62541()
     add_user(repository, "otto", Role.OPERATOR)
     store = FolderStore(tmp_path / "recordings")
     register_runner(repository)

@@ -7,9 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from testing.not_installed import not_installed
 from testing.service.gateways import running_gateways
-from tests.service.gateways.opcua.clients import PEER, address_of
+from tests.service.gateways.opcua.clients import PEER, address_of, require_open62541
 from tests.service.gateways.settings import settings_of
 
 PARTS = {
@@ -23,8 +22,7 @@ NODES = 97
 
 @pytest.mark.usefixtures("repository")
 def test_open62541_knows_each_node_of_the_companion_specifications(tmp_path: Path) -> None:
-    if not PEER.exists():
-        not_installed(f"no open62541: python -m pip install --no-deps --target {PEER} o6==2.2.0")
+    require_open62541()
     chosen = settings_of("opcua", tmp_path, anonymous=True, unencrypted=True)
     script = Path(__file__).with_name("open62541_types.py")
     with running_gateways(chosen):
