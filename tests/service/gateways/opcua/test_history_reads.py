@@ -1,7 +1,7 @@
 """HistoryRead: values of a motor's records in both orders, in answers of bounded size, and refusals."""
 
 import asyncio
-from collections.abc import Awaitable, Callable, Iterator, Sequence
+from collections.abc import Awaitable, Callable, Sequence
 from datetime import UTC, datetime, timedelta
 from itertools import chain
 from pathlib import Path
@@ -19,24 +19,14 @@ from service.recording_store.folder import FolderStore
 from service.storage import Repository, connect
 from service.storage.models import DiagnosisRow, JobRow
 from testing.service.diagnosed import add_diagnosed
-from testing.service.gateways import running_gateways
 from testing.service.job_runner import register_runner
 from testing.service.plants import NOW_NS, SECOND_NS, fault, undiagnosable
 from tests.service.gateways.opcua.clients import PUMP, looking, node
-from tests.service.gateways.settings import settings_of
 
 LEVEL, LOAD = f"{PUMP}/FaultLevel", f"{PUMP}/Load"
 FIRST = datetime.fromtimestamp(NOW_NS // SECOND_NS, UTC)
 SECOND = timedelta(seconds=1)
 LONG_AGO, FAR = datetime(1960, 1, 1, tzinfo=UTC), datetime(9999, 12, 31, 23, 59, 59, tzinfo=UTC)
-
-
-@pytest.fixture
-def settings(repository: Repository, tmp_path: Path) -> Iterator[Settings]:
-    """Of a server at which anybody may look, without encryption."""
-    chosen = settings_of("opcua", tmp_path, anonymous=True, unencrypted=True)
-    with running_gateways(chosen):
-        yield chosen
 
 
 def keep(

@@ -1,12 +1,9 @@
 """Motors are machines by the types of OPC 40001-1, and devices with a health by those of OPC 10000-100."""
 
 import asyncio
-from collections.abc import Iterator
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
-import pytest
 from asyncua import Client, Server, ua
 
 from service.configuration.settings import Settings
@@ -20,25 +17,15 @@ from service.storage import Repository
 from service.storage.states import AlarmKind, LinkState
 from testing.ports import LOOPBACK, free_port
 from testing.service.conditions import FAULT, HEALTHY, tell
-from testing.service.gateways import running_gateways
 from testing.service.links import set_link_state
 from testing.service.plants import NOW_NS
 from testing.waiting import eventually
 from tests.service.gateways.opcua.clients import PUMP, looking, node, value
-from tests.service.gateways.settings import settings_of
 
 URI = "urn:statorwatch:test"
 KINDS = ua.ObjectIds
 MOST_S = 30
 OURS_INDEX = 2
-
-
-@pytest.fixture
-def settings(repository: Repository, tmp_path: Path) -> Iterator[Settings]:
-    """Of a server at which anybody may look, without encryption."""
-    chosen = settings_of("opcua", tmp_path, anonymous=True, unencrypted=True)
-    with running_gateways(chosen):
-        yield chosen
 
 
 async def begun() -> tuple[Server, PlantNodes]:

@@ -8,7 +8,6 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
 from contextlib import ExitStack, suppress
 from datetime import UTC, datetime
 from pathlib import Path
@@ -50,37 +49,27 @@ from tests.service.gateways.opcua.clients import (
 from tests.service.gateways.settings import port_of, settings_of
 
 
-@pytest.fixture
-def open_settings(repository: Repository, tmp_path: Path) -> Iterator[Settings]:
-    """Of a server at which anybody may look, without encryption."""
-    chosen = settings_of("opcua", tmp_path, anonymous=True, unencrypted=True)
-    with running_gateways(chosen):
-        yield chosen
-
-
-def test_a_fault_is_a_failure_with_the_time_of_its_record(
-    repository: Repository, open_settings: Settings
-) -> None:
-    before = value(open_settings, f"{PUMP}/State")
+def test_a_fault_is_a_failure_with_the_time_of_its_record(repository: Repository, settings: Settings) -> None:
+    before = value(settings, f"{PUMP}/State")
     assert before.StatusCode.value == ua.StatusCodes.BadWaitingForInitialData
-    assert value(open_settings, f"{PUMP}/DeviceHealth").Value.Value == 2
+    assert value(settings, f"{PUMP}/DeviceHealth").Value.Value == 2
     tell(repository, FAULT)
-    assert eventually(lambda: value(open_settings, f"{PUMP}/State").Value.Value == "fault")
-    level = value(open_settings, f"{PUMP}/FaultLevel")
+    assert eventually(lambda: value(settings, f"{PUMP}/State").Value.Value == "fault")
+    level = value(settings, f"{PUMP}/FaultLevel")
     assert (level.Value.Value, level.StatusCode.value) == (0.0121, ua.StatusCodes.Good)
     assert level.SourceTimestamp.timestamp() * 10**9 == NOW_NS
-    assert value(open_settings, f"{PUMP}/DeviceHealth").Value.Value == 1
-    assert value(open_settings, f"{PUMP}/Load").StatusCode.value == ua.StatusCodes.BadNoData
-    assert value(open_settings, f"{PUMP}/Phase").Value.Value == "b"
+    assert value(settings, f"{PUMP}/DeviceHealth").Value.Value == 1
+    assert value(settings, f"{PUMP}/Load").StatusCode.value == ua.StatusCodes.BadNoData
+    assert value(settings, f"{PUMP}/Phase").Value.Value == "b"
 
 
 def test_the_state_of_a_machine_follows_its_relay_and_its_records(
-    repository: Repository, open_settings: Settings
+    repository: Repository, settings: Settings
 ) -> None:
     path = f"{PUMP}/MachineryItemState/CurrentState"
 
     def told() -> tuple[str, int] | int:
-        state, node_id = (value(open_settings, one) for one in (path, f"{path}/Id"))
+        state, node_id = (value(settings, one) for one in (path, f"{path}/Id"))
         if state.StatusCode.value != ua.StatusCodes.Good:
             return int(state.StatusCode.value)
         return state.Value.Value.Text, node_id.Value.Value.Identifier
@@ -89,7 +78,7 @@ def test_the_state_of_a_machine_follows_its_relay_and_its_records(
     tell(repository, HEALTHY)
     set_link_state(repository, "A1_SEL710", LinkState.UP, now_ns=NOW_NS, reason=None)
     assert eventually(lambda: told() == ("Executing", 5006))
-    assert value(open_settings, path).SourceTimestamp.timestamp() * 10**9 == NOW_NS
+    assert value(settings, path).SourceTimestamp.timestamp() * 10**9 == NOW_NS
     later_ns = NOW_NS + 10**9
     assert repository.skip_recording("PUMP-A1", "it stands", due_ns=later_ns, now_ns=later_ns)
     assert eventually(lambda: told() == ("NotExecuting", 5007))
@@ -106,9 +95,9 @@ def test_an_old_condition_is_uncertain(repository: Repository, tmp_path: Path) -
     assert (found.Value.Value, found.StatusCode.value) == (0.0004, ua.StatusCodes.UncertainLastUsableValue)
 
 
-def test_only_what_changes_is_sent_to_a_subscription(repository: Repository, open_settings: Settings) -> None:
+def test_only_what_changes_is_sent_to_a_subscription(repository: Repository, settings: Settings) -> None:
     tell(repository, HEALTHY)
-    assert eventually(lambda: value(open_settings, f"{PUMP}/State").Value.Value == "healthy")
+    assert eventually(lambda: value(settings, f"{PUMP}/State").Value.Value == "healthy")
     sent: list[tuple[str, object]] = []
 
     class Seen:
@@ -129,7 +118,7 @@ def test_only_what_changes_is_sent_to_a_subscription(repository: Repository, ope
         while len(sent) < 3:
             await asyncio.sleep(0.05)
 
-    looking(open_settings, lambda client: asyncio.wait_for(subscribe(client), 30))
+    looking(settings, lambda client: asyncio.wait_for(subscribe(client), 30))
     assert sorted(sent) == [
         (f"{PUMP}/DeviceHealth", 1),
         (f"{PUMP}/State", "fault"),
@@ -137,7 +126,7 @@ def test_only_what_changes_is_sent_to_a_subscription(repository: Repository, ope
     ]
 
 
-def test_an_alarm_is_an_event(repository: Repository, open_settings: Settings) -> None:
+def test_an_alarm_is_an_event(repository: Repository, settings: Settings) -> None:
     seen: list[Any] = []
 
     class Seen:
@@ -154,7 +143,7 @@ def test_an_alarm_is_an_event(repository: Repository, open_settings: Settings) -
         while not seen:
             await asyncio.sleep(0.05)
 
-    looking(open_settings, lambda client: asyncio.wait_for(subscribe(client), 30))
+    looking(settings, lambda client: asyncio.wait_for(subscribe(client), 30))
     (event, *_) = seen
     assert (event.Kind, event.SourceName, event.Message.Text) == ("file-refused", "A1_SEL710", "cut off")
     assert event.SourceNode.Identifier == "relay/A1_SEL710"
@@ -260,25 +249,25 @@ def test_open62541_reads_encrypted_with_history_and_has_a_motor_recorded(
 
 
 def test_more_silent_and_garbled_clients_than_places_keep_nobody_out_and_put_nobody_out(
-    repository: Repository, open_settings: Settings
+    repository: Repository, settings: Settings
 ) -> None:
     tell(repository, HEALTHY)
-    assert eventually(lambda: value(open_settings, f"{PUMP}/State").Value.Value == "healthy")
-    assert open_settings.gateways.opcua is not None
-    crowds = 3 * open_settings.gateways.opcua.max_connections // 2
+    assert eventually(lambda: value(settings, f"{PUMP}/State").Value.Value == "healthy")
+    assert settings.gateways.opcua is not None
+    crowds = 3 * settings.gateways.opcua.max_connections // 2
     with ExitStack() as crowd:
 
         async def work() -> float:
-            async with Client(address_of(open_settings)) as before:
+            async with Client(address_of(settings)) as before:
                 for number in range(crowds):
-                    one = socket.create_connection((LOOPBACK, port_of(open_settings)))
+                    one = socket.create_connection((LOOPBACK, port_of(settings)))
                     crowd.enter_context(one)
                     if number % 3 == 1:
                         one.sendall(b"HELF\xff\xff\xff\x7f" + b"x" * 50)
                     if number % 3 == 2:
                         one.sendall(bytes([number]) * number)
                 begun_s = time.monotonic()
-                async with Client(address_of(open_settings)) as after:
+                async with Client(address_of(settings)) as after:
                     assert await node(after, f"{PUMP}/State").read_value() == "healthy"
                 took_s = time.monotonic() - begun_s
                 assert await node(before, f"{PUMP}/State").read_value() == "healthy"
@@ -287,21 +276,21 @@ def test_more_silent_and_garbled_clients_than_places_keep_nobody_out_and_put_nob
         assert asyncio.run(work()) < SILENT_S
 
 
-def test_a_client_that_never_logs_in_is_sent_away(repository: Repository, open_settings: Settings) -> None:
-    with socket.create_connection((LOOPBACK, port_of(open_settings)), timeout=6 * SILENT_S) as silent:
+def test_a_client_that_never_logs_in_is_sent_away(repository: Repository, settings: Settings) -> None:
+    with socket.create_connection((LOOPBACK, port_of(settings)), timeout=6 * SILENT_S) as silent:
         assert silent.recv(1) == b""
 
 
-def test_a_chunk_without_an_end_is_cut_off(repository: Repository, open_settings: Settings) -> None:
+def test_a_chunk_without_an_end_is_cut_off(repository: Repository, settings: Settings) -> None:
     tell(repository, HEALTHY)
     sent = 0
-    with socket.create_connection((LOOPBACK, port_of(open_settings)), timeout=20) as client:
+    with socket.create_connection((LOOPBACK, port_of(settings)), timeout=20) as client:
         client.sendall(b"MSGF\xff\xff\xff\x7f")
         with suppress(ConnectionError):
             while sent < 64 * LARGEST_UNFINISHED:
                 sent += client.send(b"x" * LARGEST_UNFINISHED)
     assert sent < 64 * LARGEST_UNFINISHED
-    assert eventually(lambda: value(open_settings, f"{PUMP}/State").Value.Value == "healthy")
+    assert eventually(lambda: value(settings, f"{PUMP}/State").Value.Value == "healthy")
 
 
 def test_a_gateway_that_is_killed_is_back_with_the_right_values(

@@ -2,13 +2,10 @@
 
 import asyncio
 import time
-from collections.abc import Iterator
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
-from pathlib import Path
 from typing import Any
 
-import pytest
 from asyncua import Client, Server, ua
 
 from core.condition.kinds import Kind, State
@@ -23,12 +20,10 @@ from service.process.installation import installation_id
 from service.storage import Repository
 from service.storage.states import LinkState
 from testing.service.conditions import DRIFTING, FAULT, HEALTHY, UNKNOWN, tell
-from testing.service.gateways import running_gateways
 from testing.service.links import set_link_state
 from testing.service.plants import NOW_NS, SECOND_NS
 from testing.waiting import eventually
 from tests.service.gateways.opcua.clients import PUMP, looking, node, value
-from tests.service.gateways.settings import settings_of
 
 STATE, LEVEL, AS_OF, HEALTH = (f"{PUMP}/{name}" for name in ("State", "FaultLevel", "AsOf", "DeviceHealth"))
 RELAY = "relay/A1_SEL710"
@@ -41,14 +36,6 @@ BESIDE_RECORDS = ("Stale", "Alarms", "Priority", "QualityReason")
 GOOD = ua.StatusCodes.Good
 UNCERTAIN = ua.StatusCodes.UncertainLastUsableValue
 NO_DATA, NONE_YET = ua.StatusCodes.BadNoData, ua.StatusCodes.BadWaitingForInitialData
-
-
-@pytest.fixture
-def settings(repository: Repository, tmp_path: Path) -> Iterator[Settings]:
-    """Of a server at which anybody may look, without encryption."""
-    chosen = settings_of("opcua", tmp_path, anonymous=True, unencrypted=True)
-    with running_gateways(chosen):
-        yield chosen
 
 
 def at(time_ns: int) -> datetime:
