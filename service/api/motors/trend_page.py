@@ -43,7 +43,7 @@ def _of_recording(point: TrendPoint, time: str) -> Mapping[str, object]:
         "ci95": point.ci95,
         "scatter95": point.scatter95,
         "detection_limit": point.detection_limit,
-        "verdict": point.verdict,
+        "verdict": point.verdict.value,
         "recording_id": point.recording_id,
     }
 

@@ -76,7 +76,17 @@ class ObservationRow(Figures, Base):
     leakage_inductance_margin: Mapped[float | None] = mapped_column(Double)
 
     __table_args__ = (
-        Index("ix_observations_motor_time_ns_recording_id", "motor", "time_ns", "recording_id"),
+        # All that a trend over years is drawn from: a row with its phasors lies on a page of its own.
+        Index(
+            "ix_observations_trend",
+            "motor",
+            "time_ns",
+            "recording_id",
+            "state",
+            "mu_f",
+            "mu_f_ci95_low",
+            "mu_f_ci95_high",
+        ),
     )
 
 

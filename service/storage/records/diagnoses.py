@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from core.diagnosis.verdict import Verdict
 from service.storage.states import AlarmKind, JobState, LinkState, RecordingRequestState, RecordingState
@@ -99,21 +99,33 @@ def interval_of(low: float | None, high: float | None) -> tuple[float, float] | 
     return None if low is None or high is None else (low, high)
 
 
-@dataclass(frozen=True, slots=True)
-class TrendPoint:
+class TrendPoint(NamedTuple):
     """One recording's figure; `value` is None where the recording does not tell it.
 
     ci95: 95 % interval from all causes, of mu_f and load_level.  Of mu_f only: scatter95, from the record's
-    own scatter; detection_limit, the level that nine of ten such recordings show.
+    own scatter; detection_limit, the level that nine of ten such recordings show. A page has a thousand
+    points, and a named tuple is made in a third of the time of a dataclass.
     """
 
     recorded_ns: int
     value: float | None
-    ci95: tuple[float, float] | None
-    scatter95: tuple[float, float] | None
+    ci95_low: float | None
+    ci95_high: float | None
+    scatter95_low: float | None
+    scatter95_high: float | None
     detection_limit: float | None
     verdict: Verdict
     recording_id: str
+
+    @property
+    def ci95(self) -> tuple[float, float] | None:
+        """Return the 95 % interval from all causes."""
+        return interval_of(self.ci95_low, self.ci95_high)
+
+    @property
+    def scatter95(self) -> tuple[float, float] | None:
+        """Return the 95 % interval from the record's own scatter."""
+        return interval_of(self.scatter95_low, self.scatter95_high)
 
 
 @dataclass(frozen=True, slots=True)

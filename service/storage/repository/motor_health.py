@@ -6,7 +6,6 @@ from typing import Any, TypeVar
 from sqlalchemy import BindParameter, ColumnElement, Select, and_, bindparam, func, null, select, union_all
 from sqlalchemy.orm import Session, aliased
 
-from core.diagnosis.verdict import Verdict
 from core.operation import Operation
 from service.storage.models import (
     DiagnosisRow,
@@ -27,7 +26,6 @@ from service.storage.records import (
     RecordedStarts,
     RecordingEntry,
     TrendPoint,
-    interval_of,
 )
 from service.storage.repository.conditions.conditions import conditions_of
 from service.storage.repository.overviews.fleet import latest_figures_of
@@ -112,7 +110,7 @@ class MotorHealthRows(Sessions):
         return self._points(
             motor,
             columns,
-            _point,
+            TrendPoint,
             from_ns=from_ns,
             to_ns=to_ns,
             limit=limit,
@@ -253,25 +251,3 @@ _USABLE_STARTS = (
     .group_by(RecordingRow.motor)
 )
 _RELAYS = select(*columns_of(IedEntry, IedRow)).where(IedRow.name.in_(bindparam("of_relays", expanding=True)))
-
-
-def _point(
-    recorded_ns: int,
-    value: float | None,
-    low: float | None,
-    high: float | None,
-    scatter_low: float | None,
-    scatter_high: float | None,
-    detection_limit: float | None,
-    verdict: Verdict,
-    recording_id: str,
-) -> TrendPoint:
-    return TrendPoint(
-        recorded_ns,
-        value,
-        interval_of(low, high),
-        interval_of(scatter_low, scatter_high),
-        detection_limit,
-        verdict,
-        recording_id,
-    )

@@ -5,7 +5,7 @@ from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import fields
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from sqlalchemy import ColumnElement, Engine, Select, func, select, text, tuple_
+from sqlalchemy import ColumnElement, Engine, Row, Select, func, select, text, tuple_
 from sqlalchemy.orm import InstrumentedAttribute, Session
 
 from service.storage.engine import WRITES, busy_timeout_s_of
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     Record = TypeVar("Record", bound=DataclassInstance)
 
-Row = TypeVar("Row", bound=Base)
+Table = TypeVar("Table", bound=Base)
 Item = TypeVar("Item")
 Order = Sequence[InstrumentedAttribute[str] | InstrumentedAttribute[int]]
 
@@ -70,7 +70,7 @@ class Sessions:
         return nullcontext() if self._turns is None else self._turns.one(ahead=ahead)
 
 
-def found(session: Session, row_type: type[Row], key: str, kind: str, *, lock: bool = False) -> Row:
+def found(session: Session, row_type: type[Table], key: str, kind: str, *, lock: bool = False) -> Table:
     """Return the row of this key. Raises NotFoundError.
 
     lock: other writers that ask for the same wait until this transaction has ended, and see what it did.
@@ -105,6 +105,16 @@ def columns_of(
     return [getattr(row_type, field.name) for field in fields(record_type)]
 
 
+def rows_of(session: Session, query: Select[*tuple[Any, ...]]) -> Sequence[Row[*tuple[Any, ...]]]:
+    """Return the rows of a query.
+
+    Rows of columns come from the connection. The session would look in each for objects to make, which takes
+    longer than the database does: a thousand rows of eight columns come in half the time.
+    """
+    has_objects = any(isinstance(one["type"], type) for one in query.column_descriptions)
+    return (session if has_objects else session.connection()).execute(query).all()
+
+
 def page_of(
     session: Session,
     query: Select[*tuple[Any, ...]],
@@ -127,7 +137,7 @@ def page_of(
         )
         query = query.where(position)
     query = query.order_by(*(column.desc() if descending else column.asc() for column in order))
-    rows = session.execute(query.add_columns(*order).limit(limit + 1)).all()
+    rows = rows_of(session, query.add_columns(*order).limit(limit + 1))
     last = rows[limit - 1] if len(rows) > limit else None
     width = len(order)
     return Page(
@@ -149,7 +159,7 @@ def latest_of(
     to_item: takes what the query selects, one argument each.
     """
     last = query.order_by(*(column.desc() for column in order)).limit(limit)
-    return tuple(to_item(*row) for row in reversed(session.execute(last).all()))
+    return tuple(to_item(*row) for row in reversed(rows_of(session, last)))
 
 
 def within(
@@ -170,6 +180,6 @@ def has_as_many(session: Session, query: Select[str], most: int) -> bool:
     return number is not None and number >= most
 
 
-def only(session: Session, query: Select[Row]) -> Row | None:
+def only(session: Session, query: Select[Table]) -> Table | None:
     """Return the first row of a query, None without one."""
     return session.scalars(query.limit(1)).first()

@@ -1,8 +1,9 @@
 """The trend of a motor at any scale: all of its records where they are few, else pieces of time."""
 
-from typing import Any, Final
+import json
+from typing import Final
 
-from sqlalchemy import JSON, case, func, literal, select
+from sqlalchemy import Text, case, cast, func, literal, select
 from sqlalchemy.orm import Session
 
 from core.condition.kinds import State
@@ -10,7 +11,7 @@ from service.storage.models import MotorRow, ObservationRow
 from service.storage.records import ConditionPoint
 from service.storage.records.history import ThinnedTrend, TrendPiece
 from service.storage.repository.conditions.observations import point
-from service.storage.repository.sessions import Sessions, columns_of, found, has_as_many
+from service.storage.repository.sessions import Sessions, columns_of, found, has_as_many, rows_of
 
 MOST_POINTS: Final = 1000
 PIECES: Final = 400
@@ -46,7 +47,7 @@ class ThinnedTrendRows(Sessions):
             ids = select(ObservationRow.recording_id).where(*said, *within)
             if not has_as_many(session, ids, most_points + 1):
                 order = (ObservationRow.time_ns, ObservationRow.recording_id)
-                rows = session.execute(query.order_by(*order)).all()
+                rows = rows_of(session, query.order_by(*order))
                 return ThinnedTrend(first_ns, end_ns, len(rows), points=tuple(point(*row) for row in rows))
             step_ns = max(1, -(-(end_ns - first_ns) // pieces))
             seen = _pieces(session, motor, first_ns, end_ns, step_ns)
@@ -71,16 +72,18 @@ def _pieces(session: Session, motor: str, first_ns: int, end_ns: int, step_ns: i
     begins = begins.union_all(select(begins.c.begin_ns + step_ns).where(begins.c.begin_ns + step_ns < end_ns))
     array = func.json_array if session.get_bind().dialect.name == "sqlite" else func.json_build_array
     rank = case({state: number for number, state in enumerate(WORST)}, value=ObservationRow.state)
-    told: Any = (
+    told = (
         select(
-            array(
-                func.count(),
-                func.min(ObservationRow.mu_f),
-                func.max(ObservationRow.mu_f),
-                func.min(ObservationRow.mu_f_ci95_low),
-                func.max(ObservationRow.mu_f_ci95_high),
-                func.max(rank),
-                type_=JSON,
+            cast(
+                array(
+                    func.count(),
+                    func.min(ObservationRow.mu_f),
+                    func.max(ObservationRow.mu_f),
+                    func.min(ObservationRow.mu_f_ci95_low),
+                    func.max(ObservationRow.mu_f_ci95_high),
+                    func.max(rank),
+                ),
+                Text,
             )
         )
         .where(ObservationRow.motor == motor, ObservationRow.state.is_not(None))
@@ -89,9 +92,10 @@ def _pieces(session: Session, motor: str, first_ns: int, end_ns: int, step_ns: i
         .where(ObservationRow.time_ns < end_ns)
         .scalar_subquery()
     )
-    rows = session.execute(select(begins.c.begin_ns, told).order_by(begins.c.begin_ns))
+    rows = rows_of(session, select(begins.c.begin_ns, told).order_by(begins.c.begin_ns))
+    figures = json.loads(f"[{','.join(text for _, text in rows)}]")  # at once: a tenth of the time of each
     return tuple(
         TrendPiece(begin_ns, begin_ns + step_ns, records, lowest, highest, low, high, WORST[worst])
-        for begin_ns, (records, lowest, highest, low, high, worst) in rows
+        for (begin_ns, _), (records, lowest, highest, low, high, worst) in zip(rows, figures, strict=True)
         if records
     )
