@@ -6,11 +6,13 @@ named in the result, and the others are fitted once more.
 """
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from math import exp, isinf, log
 from time import perf_counter
 
 import numpy as np
 
+from core.commissioning.errors import DivergenceError
 from core.commissioning.fit import Fit, Mask, Records
 from core.commissioning.identifiability import Unidentifiable, compensating, condition_number, unidentifiable
 from core.commissioning.plausibility import contradictions, delay_warning
@@ -76,7 +78,7 @@ def commission(
     RecordingError
         If a recording lacks channels.
     CommissioningError
-        If a recording is no start, or none that a motor of this nameplate can make.
+        If a recording is no start, or none that a motor of this nameplate can make or its model can follow.
     """
     begun = perf_counter()
     report = progress or _no_progress
@@ -131,7 +133,10 @@ def _found(starts: list[Start], prior: Prior, law: LoadLaw, report: Progress) ->
         fits = []
         for number, candidate in enumerate(candidates):
             report((k + 0.3 + 0.6 * number / len(candidates)) * share, f"refining {start.source}")
-            fits.append(records.fit(candidate, _all(candidate), converged=COARSELY))
+            with suppress(DivergenceError):
+                fits.append(records.fit(candidate, _all(candidate), converged=COARSELY))
+        if not fits:
+            raise DivergenceError(start.source)
         best = min(fits, key=lambda fit: fit.squared_error)
         shared.append(best.vector[: len(PARAMETERS)])
         own.append(best.vector[len(PARAMETERS) :])
@@ -145,13 +150,24 @@ def _found(starts: list[Start], prior: Prior, law: LoadLaw, report: Progress) ->
 def _with_law(
     coarse: list[Start], prior: Prior, vector: Array, wanted: LoadLaw | None
 ) -> tuple[LoadLaw, Array, int, bool]:
-    """Return the load's law, the vector under it, what choosing took, and whether the records identify it."""
+    """Return the load's law, the vector under it, what choosing took, and whether the records identify it.
+
+    They do not where a law could not be tried, because the model's current grows without bound under it.
+    Raises DivergenceError where none could be.
+    """
     laws = list(LoadLaw) if wanted is None else [wanted]
     records = {law: Records(coarse, prior, law) for law in laws}
-    fits = {law: records[law].fit(vector, _all(vector), converged=COARSELY) for law in laws}
-    best, *others = sorted(laws, key=lambda law: fits[law].squared_error)
-    identified = all(preference(records[best], fits[best], fits[law]) > LAW_SIGNIFICANCE for law in others)
-    chosen = best if identified else LoadLaw.CONSTANT
+    fits: dict[LoadLaw, Fit] = {}
+    for law in laws:
+        with suppress(DivergenceError):
+            fits[law] = records[law].fit(vector, _all(vector), converged=COARSELY)
+    if not fits:
+        raise DivergenceError(", ".join(start.source for start in coarse))
+    best, *others = sorted(fits, key=lambda law: fits[law].squared_error)
+    identified = len(fits) == len(laws) and all(
+        preference(records[best], fits[best], fits[law]) > LAW_SIGNIFICANCE for law in others
+    )
+    chosen = best if identified or LoadLaw.CONSTANT not in fits else LoadLaw.CONSTANT
     return chosen, fits[chosen].vector, sum(fit.evaluations for fit in fits.values()), identified
 
 

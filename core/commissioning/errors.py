@@ -22,3 +22,21 @@ class CommissioningError(ValueError):
         self.expected = expected
         self.found = found
         super().__init__(f"{source}: {field}: expected {expected}, found {found}")
+
+
+class DivergenceError(CommissioningError):
+    """The error of starts that the motor's model cannot follow: its current grows without bound.
+
+    Parameters
+    ----------
+    sources : str
+        Names of the recordings.
+    """
+
+    def __init__(self, sources: str) -> None:
+        super().__init__(
+            sources,
+            "start",
+            expected="a start that a motor of this nameplate can make",
+            found="one for which the model's current grows without bound, where it comes nearest",
+        )

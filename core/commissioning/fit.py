@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from core.commissioning.errors import DivergenceError
 from core.commissioning.prior import Prior
 from core.commissioning.start import Start
 from core.commissioning.unknowns import Coordinates
@@ -100,7 +101,8 @@ class Records:
     def linearise(self, vector: Array, free: Mask) -> tuple[list[Array], list[Array]]:
         """Return the residuals of each record and the derivatives of its modelled current.
 
-        Derivatives are zero after coordinates that are not free.
+        Derivatives are zero after coordinates that are not free. Under a law that drives the motor the faster
+        the faster it turns, a current can grow without bound.
 
         Parameters
         ----------
@@ -115,6 +117,11 @@ class Records:
             Measured minus modelled current, shape (2, compared) [A].
         jacobians : list of ndarray
             Derivatives, shape (entries, 2, compared).
+
+        Raises
+        ------
+        DivergenceError
+            If a current is not finite at this point or right beside it.
         """
         lower, upper = self.coordinates.bounds()
         residuals, jacobians = [], []
@@ -125,6 +132,8 @@ class Records:
                 rows[1 + 2 * n, entry] = min(vector[entry] + STEP, upper[entry])
                 rows[2 + 2 * n, entry] = max(vector[entry] - STEP, lower[entry])
             current = self._currents(rows, k)
+            if not np.isfinite(current).all():
+                raise DivergenceError(", ".join(one.source for one in self.starts))
             steps = np.array([rows[1 + 2 * n, e] - rows[2 + 2 * n, e] for n, e in enumerate(entries)])
             jacobian = np.zeros((vector.size, *start.measured_ab.shape))
             jacobian[entries] = (current[1::2] - current[2::2]) / steps[:, np.newaxis, np.newaxis]
@@ -154,6 +163,11 @@ class Records:
         -------
         Fit
             The fit.
+
+        Raises
+        ------
+        DivergenceError
+            If the current is not finite where the fit begins, or beside a point that it comes to.
         """
         lower, upper = self.coordinates.bounds()
         begun = self.evaluations

@@ -43,21 +43,31 @@ def examine_start(recording: Recording, motor: Motor) -> ExaminedStart:
     """
     figures = measure_start(recording, motor)
     try:
-        start = start_of(
-            recording,
-            motor.nameplate,
-            motor.channels,
-            transformers=motor.transformers,
-            by_steps=motor.wound_rotor is not None,
-        )
-        gap = start.air_gap(motor.parameters)
-        stepped = None if motor.wound_rotor is None else stepped_start(gap, motor)
-        if stepped is not None:
-            return _by_steps(figures, gap, motor, stepped)
-        found = start_parameters(recording, motor)
+        return _with_model(recording, motor, figures)
     except (RecordingError, CommissioningError) as error:
         reason = f"{error.field}: expected {error.expected}, found {error.found}"
-        return ExaminedStart(figures, stress=start_stress(figures, motor), remark=reason)
+    except (ValueError, ArithmeticError) as error:  # numpy's LinAlgError is among them
+        reason = f"the model's figures cannot be computed: {error}"
+    return ExaminedStart(figures, stress=start_stress(figures, motor), remark=reason)
+
+
+def _with_model(recording: Recording, motor: Motor, figures: MotorStart) -> ExaminedStart:
+    """Return a start with what the model tells. Raises RecordingError, CommissioningError, and of figures.
+
+    The errors of figures are ValueError and ArithmeticError.
+    """
+    start = start_of(
+        recording,
+        motor.nameplate,
+        motor.channels,
+        transformers=motor.transformers,
+        by_steps=motor.wound_rotor is not None,
+    )
+    gap = start.air_gap(motor.parameters)
+    stepped = None if motor.wound_rotor is None else stepped_start(gap, motor)
+    if stepped is not None:
+        return _by_steps(figures, gap, motor, stepped)
+    found = start_parameters(recording, motor)
     fits = found.residual_share <= USUAL_RESIDUAL
     known = _with_parameters(motor, found) if fits else motor
     gap = start.air_gap(known.parameters)

@@ -1,10 +1,12 @@
 """A start with all that it shows, and in words what it does not."""
 
 import json
+from pathlib import Path
 
 import pytest
 
 from core.machines.parameters import Motor
+from core.recordings import read
 from core.starts.examining import examine_start
 from testing.machines.motors import LARGE, MEDIUM
 from testing.machines.starts import StartRecord, with_parameters
@@ -40,3 +42,16 @@ def test_a_start_that_began_before_the_record_has_figures_and_a_remark() -> None
     assert found.sideband is None
     assert found.remark is not None
     assert "pre-trigger" in found.remark
+
+
+def test_a_motor_that_is_switched_on_again_while_it_turns_has_figures_and_a_remark() -> None:
+    # The nearest that the model comes has a thirtieth of the inertia: under a load that grows with the square
+    # of the speed its current has no bound.
+    record = read(Path(__file__).parent / "records" / "restart_at_speed.cfg")
+
+    found = examine_start(record, MEDIUM)
+
+    assert found.figures.peak_current_A > 5.0 * found.figures.rated_current_A
+    assert found.parameters is None
+    assert found.remark is not None
+    assert "unexplained" in found.remark
