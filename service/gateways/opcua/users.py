@@ -63,6 +63,8 @@ def actor_of(account: Account, address: str) -> Actor:
 def has_changed(repository: Repository, account: Account) -> bool:
     """Return whether an account is deleted, disabled, or has other roles or another password by now.
 
+    So it has where all sessions of its user were ended.
+
     Raises SQLAlchemyError where the database does not answer.
     """
     try:
@@ -73,7 +75,13 @@ def has_changed(repository: Repository, account: Account) -> bool:
 
 def _kept(account: Account) -> tuple[object, ...]:
     """Return what stays the same as long as a session lasts. created_ns: others may get the name later."""
-    return account.created_ns, account.roles, account.disabled, account.password_set_ns
+    return (
+        account.created_ns,
+        account.roles,
+        account.disabled,
+        account.password_set_ns,
+        account.sessions_ended_ns,
+    )
 
 
 CALLER: ContextVar[PlantUser | None] = ContextVar("caller", default=None)

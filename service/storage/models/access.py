@@ -14,6 +14,7 @@ class UserRow(Base):
 
     name: in lower case. roles: their names, with spaces between. password: an Argon2 hash; None where nobody
     can log in with one. subject: who an identity provider says it is, with the provider before it.
+    sessions_ended_ns: when somebody ended all of their sessions, also those that are no rows here.
     """
 
     __tablename__ = "users"
@@ -26,6 +27,7 @@ class UserRow(Base):
     disabled: Mapped[bool]
     created_ns: Mapped[int]
     password_set_ns: Mapped[int | None]
+    sessions_ended_ns: Mapped[int | None]
     last_login_ns: Mapped[int | None]
     last_login_origin: Mapped[str | None]
 

@@ -10,6 +10,7 @@ class User:
     """Somebody who may log in.
 
     has_password: False where nobody can log in with one. subject: who an identity provider says it is.
+    sessions_ended_ns: when somebody ended all of their sessions.
     """
 
     name: str
@@ -20,6 +21,7 @@ class User:
     subject: str | None
     created_ns: int
     password_set_ns: int | None
+    sessions_ended_ns: int | None
     last_login_ns: int | None
     last_login_origin: str | None
 

@@ -73,8 +73,9 @@ class UserSessionRows(Sessions):
             session.delete(row)
 
     def end_sessions_of(self, user: str, *, by: Actor, now_ns: int) -> None:
-        """End all logins of a user. Raises NotFoundError."""
+        """End all logins of a user, also those at gateways. Raises NotFoundError."""
         with self._write() as session:
-            found(session, UserRow, user, "user", lock=True)
+            row = found(session, UserRow, user, "user", lock=True)
+            row.sessions_ended_ns = now_ns
             end_sessions(session, user)
             note_change(session, by, AuditAction.SESSIONS_ENDED, ("user", user), now_ns=now_ns)

@@ -201,6 +201,7 @@ def user_of(row: UserRow) -> User:
         subject=row.subject,
         created_ns=row.created_ns,
         password_set_ns=row.password_set_ns,
+        sessions_ended_ns=row.sessions_ended_ns,
         last_login_ns=row.last_login_ns,
         last_login_origin=row.last_login_origin,
     )

@@ -40,6 +40,7 @@ CHANGES: dict[str, Change] = {
         "otto", hashed("another horse battery"), by=TESTS, now_ns=NOW_NS + 1
     ),
     "deleted and made again": make_again,
+    "logged out everywhere": lambda repository: repository.end_sessions_of("otto", by=TESTS, now_ns=NOW_NS),
 }
 
 
