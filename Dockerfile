@@ -8,7 +8,10 @@ WORKDIR /src
 COPY pyproject.toml constraints.txt ./
 # PostgreSQL's driver and the client of S3-compatible stores are among them, since an image cannot be added to.
 RUN python -c "import tomllib; p = tomllib.load(open('pyproject.toml', 'rb'))['project']; print(*p['dependencies'], *p['optional-dependencies']['postgres'], *p['optional-dependencies']['s3'], sep='\n')" > requirements.txt \
- && /opt/statorwatch/bin/pip install --constraint constraints.txt --requirement requirements.txt
+ && /opt/statorwatch/bin/pip install --constraint constraints.txt --requirement requirements.txt \
+ # The client describes all of a cloud's services; stores of recordings are S3, and these say who asks.
+ && find /opt/statorwatch/lib/python3*/site-packages/botocore/data -mindepth 1 -maxdepth 1 -type d \
+    ! -name s3 ! -name sts ! -name sso ! -name sso-oidc ! -name signin -exec rm -rf {} +
 COPY . .
 # What builds the wheel, pinned too: pip up to 25.2 reads the first of the two for it, later ones the second.
 RUN echo "setuptools==84.2.1" > build-constraints.txt \

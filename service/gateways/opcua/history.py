@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
 from functools import partial
-from typing import Any, Final, Protocol
+from typing import Any, Final
 
 import structlog
 from asyncua import Server, ua
@@ -14,10 +14,10 @@ from asyncua.server.history import HistoryManager
 from asyncua.server.internal_server import InternalServer
 from sqlalchemy.exc import SQLAlchemyError
 
-from core.diagnosis.verdict import Verdict
+from service.gateways.opcua.figure_trends import FigureTrend, PastValue, trend_of
 from service.gateways.opcua.worker_threads import LONGEST_S, TURN_S, WorkerThreads
 from service.storage import NotFoundError, Repository
-from service.storage.records import Page, Quantity, TrendPoint
+from service.storage.records import Quantity
 from service.timing.database_silence import database_trouble
 
 log = structlog.get_logger(__name__)
@@ -94,14 +94,6 @@ class _Reading:
         return self.has_failed or time.monotonic() > self.until_s
 
 
-class _Trend(Protocol):
-    """Asks for values of one figure of a motor."""
-
-    def __call__(
-        self, *, limit: int, from_ns: int | None = None, to_ns: int | None = None, descending: bool = False
-    ) -> Page[TrendPoint]: ...
-
-
 class TrendHistory(HistoryManager):  # type: ignore[misc]
     """The values of records. Nothing is stored here: the database has it already."""
 
@@ -137,7 +129,7 @@ class TrendHistory(HistoryManager):  # type: ignore[misc]
             return _refused(ua.StatusCodes.BadResourceUnavailable)
         try:
             motor, quantity = self._place(details, asked.NodeId)
-            trend = partial(self._repository.trend, motor, quantity)
+            trend = trend_of(self._repository, motor, quantity)
             most = min(details.NumValuesPerNode or most, most)
             return _read(trend, _asked(details, asked.ContinuationPoint), most)
         except ua.UaStatusCodeError as refused:
@@ -171,21 +163,19 @@ async def tell_capabilities(server: Server) -> None:
         await server.write_attribute_value(node_id, ua.DataValue(value))
 
 
-def _read(trend: _Trend, asked: _Asked, most: int) -> ua.HistoryReadResult:
+def _read(trend: FigureTrend, asked: _Asked, most: int) -> ua.HistoryReadResult:
     """Return values in their order, with bounds where they are asked for (OPC 10000-11, 4.6)."""
     domain = _domain(trend, asked)
     is_first = asked.next_ns is None
     values = [_lacking(asked.start)] if domain.lacks_start and is_first else []
     end = asked.told + most - len(values)
-    points = trend(
-        from_ns=domain.from_ns, to_ns=domain.to_ns, limit=end + 1, descending=asked.newest_first
-    ).items
+    points = trend(from_ns=domain.from_ns, to_ns=domain.to_ns, limit=end + 1, descending=asked.newest_first)
     values += [_value(point) for point in points[asked.told : end]]
     rest = None
     if len(points) > end:
-        rest = _continuation(points[end].recorded_ns, points[:end])
+        rest = _continuation(points[end].time_ns, points[:end])
     elif domain.lacks_end:
-        last_ns = points[-1].recorded_ns if points else _nanoseconds(asked.start) or 0
+        last_ns = points[-1].time_ns if points else _nanoseconds(asked.start) or 0
         if len(values) < most:
             values.append(_lacking(asked.end or utc(last_ns) + (-SECOND if asked.newest_first else SECOND)))
         else:
@@ -213,7 +203,7 @@ def _asked(details: ua.ReadRawModifiedDetails, continuation: bytes | None) -> _A
     return replace(asked, next_ns=next_ns, told=told)
 
 
-def _domain(trend: _Trend, asked: _Asked) -> _Domain:
+def _domain(trend: FigureTrend, asked: _Asked) -> _Domain:
     """Return where values are looked for; with bounds it reaches to the values next to both times."""
     start_ns, end_ns = _nanoseconds(asked.start), _nanoseconds(asked.end)
     has_end = asked.with_bounds or start_ns == end_ns
@@ -237,15 +227,15 @@ def _domain(trend: _Trend, asked: _Asked) -> _Domain:
     return _Domain(from_ns, to_ns, lacks_start, lacks_end)
 
 
-def _bound(trend: _Trend, time_ns: int | None, *, is_before: bool) -> int | None:
+def _bound(trend: FigureTrend, time_ns: int | None, *, is_before: bool) -> int | None:
     """Return the time of the value at this time, or of the next one before or after it."""
     if time_ns is None:
         return None
     if is_before:
-        points = trend(to_ns=_after(time_ns), limit=1, descending=True).items
+        points = trend(to_ns=_after(time_ns), limit=1, descending=True)
     else:
-        points = trend(from_ns=time_ns, limit=1).items
-    return points[0].recorded_ns // RESOLUTION_NS * RESOLUTION_NS if points else None
+        points = trend(from_ns=time_ns, limit=1)
+    return points[0].time_ns // RESOLUTION_NS * RESOLUTION_NS if points else None
 
 
 def _after(time_ns: int | None) -> int | None:
@@ -253,8 +243,8 @@ def _after(time_ns: int | None) -> int | None:
     return None if time_ns is None else time_ns + RESOLUTION_NS
 
 
-def _continuation(next_ns: int, told: Sequence[TrendPoint]) -> bytes:
-    return CONTINUATION.pack(next_ns, sum(point.recorded_ns == next_ns for point in told))
+def _continuation(next_ns: int, told: Sequence[PastValue]) -> bytes:
+    return CONTINUATION.pack(next_ns, sum(point.time_ns == next_ns for point in told))
 
 
 def _named(time: datetime | None) -> datetime | None:
@@ -276,10 +266,9 @@ def _refused(code: int) -> ua.HistoryReadResult:
     return ua.HistoryReadResult(StatusCode=ua.StatusCode(code))
 
 
-def _value(point: TrendPoint) -> ua.DataValue:
-    is_told = point.value is not None and point.verdict is not Verdict.UNDIAGNOSABLE
-    status = ua.StatusCodes.Good if is_told else ua.StatusCodes.BadNoData
-    time = utc(point.recorded_ns)
+def _value(point: PastValue) -> ua.DataValue:
+    status = ua.StatusCodes.Good if point.is_good else ua.StatusCodes.BadNoData
+    time = utc(point.time_ns)
     return ua.DataValue(
         ua.Variant(point.value, ua.VariantType.Double) if point.value is not None else ua.Variant(),
         StatusCode=ua.StatusCode(status),

@@ -83,15 +83,17 @@ class ObservationRows(Sessions):
         from_ns: int | None = None,
         to_ns: int | None = None,
         after: Cursor | None = None,
+        descending: bool = False,
     ) -> Page[ConditionPoint]:
         """Return what was said from each record on, oldest first, from_ns <= time < to_ns.
 
+        descending: newest first instead.
         A record that is not folded yet is not there. Raises NotFoundError.
         """
         query = _folded(motor).where(*within(ObservationRow.time_ns, from_ns, to_ns))
         with self._read() as session:
             found(session, MotorRow, motor, "motor")
-            return page_of(session, query, _ORDER, point, limit=limit, after=after)
+            return page_of(session, query, _ORDER, point, limit=limit, after=after, descending=descending)
 
     def latest_condition_points(self, motor: str, *, limit: int) -> tuple[ConditionPoint, ...]:
         """Return what was said from each of a motor's latest records on, oldest first."""

@@ -18,7 +18,7 @@ from testing.ports import free_port
 from testing.service.gateways import healthy_plant_on_postgresql, running_gateways
 from testing.service.postgresql import PostgresServer
 from tests.service.gateways.opcua.clients import PUMP, add_user, node
-from tests.service.gateways.opcua.test_history_reads import FAR, LEVEL, LONG_AGO, details_of
+from tests.service.gateways.opcua.test_history_reads import FAR, LOAD, LONG_AGO, details_of
 from tests.service.gateways.opcua.test_logins import client_of
 
 CLIENTS = 40
@@ -40,7 +40,7 @@ async def keep_reading(client: Client, said: list[str]) -> None:
     """Ask for the history again and again, and note what comes of it."""
     while True:
         try:
-            result = await node(client, LEVEL).history_read(details_of(LONG_AGO, FAR))
+            result = await node(client, LOAD).history_read(details_of(LONG_AGO, FAR))
             said.append(result.StatusCode.name)
         except ua.UaStatusCodeError as refused:
             said.append(type(refused).__name__)

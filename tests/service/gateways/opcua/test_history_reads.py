@@ -2,6 +2,7 @@
 
 import asyncio
 from collections.abc import Awaitable, Callable, Sequence
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from itertools import chain
 from pathlib import Path
@@ -14,16 +15,21 @@ from sqlalchemy.orm import Session
 
 from core.diagnosis.verdict import Diagnosis
 from service.configuration.settings import Settings, sqlite_url
-from service.gateways.opcua.history import MOST, MOST_OF_ALL
+from service.gateways.opcua.history import MOST, MOST_OF_ALL, utc
 from service.recording_store.folder import FolderStore
 from service.storage import Repository, connect
 from service.storage.models import DiagnosisRow, JobRow
+from testing.service.conditions import FAULT, tell
 from testing.service.diagnosed import add_diagnosed
+from testing.service.gateways import running_gateways
 from testing.service.job_runner import register_runner
+from testing.service.observations import observation
 from testing.service.plants import NOW_NS, SECOND_NS, fault, undiagnosable
-from tests.service.gateways.opcua.clients import PUMP, looking, node
+from tests.service.gateways.opcua.clients import PUMP, looking, node, value
+from tests.service.gateways.settings import settings_of
 
 LEVEL, LOAD = f"{PUMP}/FaultLevel", f"{PUMP}/Load"
+"""The level is the condition's; the load is each record's own, so most tests look at that."""
 FIRST = datetime.fromtimestamp(NOW_NS // SECOND_NS, UTC)
 SECOND = timedelta(seconds=1)
 LONG_AGO, FAR = datetime(1960, 1, 1, tzinfo=UTC), datetime(9999, 12, 31, 23, 59, 59, tzinfo=UTC)
@@ -32,12 +38,13 @@ LONG_AGO, FAR = datetime(1960, 1, 1, tzinfo=UTC), datetime(9999, 12, 31, 23, 59,
 def keep(
     repository: Repository, tmp_path: Path, diagnoses: Sequence[Diagnosis], times_s: Sequence[int] = ()
 ) -> None:
-    """Have records of PUMP-A1 diagnosed so: one each second, or at these times."""
+    """Have records of PUMP-A1 diagnosed so, each with its level as its load: one a second, or at times."""
     register_runner(repository)
     store = FolderStore(tmp_path / "recordings")
     for number, diagnosis in enumerate(diagnoses):
         at_s = times_s[number] if times_s else number
-        add_diagnosed(repository, store, diagnosis, NOW_NS + at_s * SECOND_NS, name=f"E{number}")
+        told = replace(diagnosis, load_level=diagnosis.mu_f)
+        add_diagnosed(repository, store, told, NOW_NS + at_s * SECOND_NS, name=f"E{number}")
 
 
 def repeat(tmp_path: Path, times: int) -> None:
@@ -47,7 +54,7 @@ def repeat(tmp_path: Path, times: int) -> None:
         numbers = range(1, times + 1)
         session.execute(insert(JobRow), [job | {"id": f"job {number}"} for number in numbers])
         more = [
-            {"id": f"diagnosis {number}", "job_id": f"job {number}", "mu_f": number / 10**5}
+            {"id": f"diagnosis {number}", "job_id": f"job {number}", "load_level": number / 10**5}
             | {"recorded_ns": NOW_NS + number * SECOND_NS}
             for number in numbers
         ]
@@ -102,8 +109,8 @@ def answers(settings: Settings, path: str, details: object) -> list[list[float]]
 
 
 def values(settings: Settings, start: datetime | None, end: datetime | None, most: int = 0) -> list[float]:
-    """The levels of the first answer."""
-    (first, *_) = answers(settings, LEVEL, details_of(start, end, most))
+    """The loads of the first answer."""
+    (first, *_) = answers(settings, LOAD, details_of(start, end, most))
     return first
 
 
@@ -114,19 +121,38 @@ def refusal(settings: Settings, ask: Callable[[Client], Awaitable[Any]]) -> str:
     return type(refused.value).__name__
 
 
-def test_load_and_level_have_their_records_with_times(
+def told(settings: Settings, path: str) -> list[tuple[float | None, int, datetime]]:
+    """All values that a variable told, with status and time."""
+    found = answer(settings, path, details_of(LONG_AGO, FAR)).HistoryData.DataValues
+    return [(one.Value.Value, one.StatusCode.value, one.SourceTimestamp) for one in found]
+
+
+def test_loads_are_those_of_their_records_with_times(
     repository: Repository, tmp_path: Path, settings: Settings
 ) -> None:
     keep(repository, tmp_path, [fault(0.01), undiagnosable(), fault(0.02)])
 
-    def told(path: str) -> list[tuple[float | None, int, datetime]]:
-        found = answer(settings, path, details_of(LONG_AGO, FAR)).HistoryData.DataValues
-        return [(one.Value.Value, one.StatusCode.value, one.SourceTimestamp) for one in found]
-
     times = [FIRST, FIRST + SECOND, FIRST + 2 * SECOND]
     good, none = ua.StatusCodes.Good, ua.StatusCodes.BadNoData
-    assert told(LEVEL) == list(zip([0.01, None, 0.02], [good, none, good], times, strict=True))
-    assert told(LOAD) == list(zip([0.48, None, 0.48], [good, none, good], times, strict=True))
+    assert told(settings, LOAD) == list(zip([0.01, None, 0.02], [good, none, good], times, strict=True))
+
+
+def test_levels_are_those_of_the_condition_as_the_variable_told_them(
+    repository: Repository, tmp_path: Path
+) -> None:
+    register_runner(repository)
+    store = FolderStore(tmp_path / "recordings")
+    seen = [observation(hour) for hour in (-2, -1)]
+    for number, one in enumerate(seen):  # each record by itself shows 5.1 %
+        add_diagnosed(repository, store, fault(), one.time_ns, name=f"E{number}", observed=one)
+    tell(repository, replace(FAULT, as_of_ns=seen[-1].time_ns))
+
+    chosen = settings_of("opcua", tmp_path, anonymous=True, unencrypted=True)
+    with running_gateways(chosen):
+        history, now = told(chosen, LEVEL), value(chosen, LEVEL)
+
+    assert history == [(FAULT.mu_f, ua.StatusCodes.Good, utc(one.time_ns)) for one in seen]
+    assert (now.Value.Value, now.StatusCode.value, now.SourceTimestamp) == history[-1]
 
 
 def test_more_than_a_thousand_values_come_in_answers_of_a_thousand(
@@ -135,10 +161,10 @@ def test_more_than_a_thousand_values_come_in_answers_of_a_thousand(
     keep(repository, tmp_path, [fault(0.0)])
     repeat(tmp_path, MOST + 2)
     levels = [number / 10**5 for number in range(MOST + 3)]
-    oldest_first = answers(settings, LEVEL, details_of(FIRST, FAR))
+    oldest_first = answers(settings, LOAD, details_of(FIRST, FAR))
     assert [len(one) for one in oldest_first] == [MOST, 3]
     assert list(chain(*oldest_first)) == levels
-    newest_first = answers(settings, LEVEL, details_of(FAR, LONG_AGO))
+    newest_first = answers(settings, LOAD, details_of(FAR, LONG_AGO))
     assert [len(one) for one in newest_first] == [MOST, 3]
     assert list(chain(*newest_first)) == levels[::-1]
     assert len(values(settings, FIRST, FAR, 5 * MOST)) == MOST
@@ -152,7 +178,7 @@ def test_many_nodes_share_the_values_of_an_answer(
     nodes = 50
 
     async def ask(client: Client) -> list[Any]:
-        level = node(client, LEVEL)
+        level = node(client, LOAD)
         asked = ua.HistoryReadParameters(
             HistoryReadDetails=details_of(FIRST, FAR),
             ReleaseContinuationPoints=False,
@@ -180,8 +206,8 @@ def test_the_newest_come_first_where_the_start_is_later_than_the_end_or_not_name
     assert values(settings, None, last, 2) == [0.05, 0.04]
     assert values(settings, None, last - SECOND, 2) == [0.04, 0.03]
     assert values(settings, FIRST, None, 2) == [0.01, 0.02]
-    assert answers(settings, LEVEL, details_of(None, last, 2)) == [[0.05, 0.04], [0.03, 0.02], [0.01]]
-    assert answers(settings, LEVEL, details_of(FIRST, FAR, 2)) == [[0.01, 0.02], [0.03, 0.04], [0.05]]
+    assert answers(settings, LOAD, details_of(None, last, 2)) == [[0.05, 0.04], [0.03, 0.02], [0.01]]
+    assert answers(settings, LOAD, details_of(FIRST, FAR, 2)) == [[0.01, 0.02], [0.03, 0.04], [0.05]]
 
 
 def test_a_window_has_what_is_in_it_alone(repository: Repository, tmp_path: Path, settings: Settings) -> None:
@@ -191,7 +217,7 @@ def test_a_window_has_what_is_in_it_alone(repository: Repository, tmp_path: Path
     assert values(settings, FIRST + SECOND, FIRST + SECOND) == [0.02]
     assert values(settings, LONG_AGO, FIRST + SECOND) == [0.01]
     assert values(settings, FIRST + 4 * SECOND, FAR) == [0.05]
-    nothing = answer(settings, LEVEL, details_of(FIRST + 5 * SECOND, FAR))
+    nothing = answer(settings, LOAD, details_of(FIRST + 5 * SECOND, FAR))
     assert nothing.StatusCode.value == ua.StatusCodes.GoodNoData
     assert nothing.HistoryData.DataValues == []
 
@@ -203,7 +229,7 @@ def test_each_of_several_records_of_one_time_is_told_once(
     keep(repository, tmp_path, [fault(level) for level in levels], [0, 1, 1, 1, 2])
     for start, end in ((FIRST, FAR), (FAR, LONG_AGO)):
         for most in (1, 2, 3, 4):
-            told = answers(settings, LEVEL, details_of(start, end, most))
+            told = answers(settings, LOAD, details_of(start, end, most))
             assert sorted(chain(*told)) == levels, (start, most)
             assert {len(one) for one in told[:-1]} == {most}
 
@@ -225,8 +251,8 @@ def test_what_has_no_history_is_refused(settings: Settings) -> None:
     assert refusal(settings, read(f"{PUMP}/State")) == unsupported
     assert refusal(settings, read(PUMP)) == unsupported
     assert refusal(settings, read("relay/A1_SEL710/Link")) == unsupported
-    assert refusal(settings, read(LEVEL, details_of(FIRST, FAR, modified=True))) == unsupported
-    assert refusal(settings, read(LEVEL, ua.ReadAtTimeDetails(ReqTimes=[FIRST]))) == unsupported
+    assert refusal(settings, read(LOAD, details_of(FIRST, FAR, modified=True))) == unsupported
+    assert refusal(settings, read(LOAD, ua.ReadAtTimeDetails(ReqTimes=[FIRST]))) == unsupported
     assert refusal(settings, events) == unsupported
 
 
@@ -245,14 +271,12 @@ def test_a_node_that_is_refused_leaves_others_their_answers(
 
     found = looking(settings, ask)
     assert [one.StatusCode.name for one in found] == [
-        "Good",
+        "GoodNoData",
         "BadHistoryOperationUnsupported",
         "BadNodeIdUnknown",
         "Good",
     ]
-    level, _, _, load = found
-    assert [one.Value.Value for one in level.HistoryData.DataValues] == [0.01]
-    assert [one.Value.Value for one in load.HistoryData.DataValues] == [0.48]
+    assert [one.Value.Value for one in found[-1].HistoryData.DataValues] == [0.01]
 
 
 def test_a_motor_without_records_has_no_history(settings: Settings) -> None:
@@ -267,8 +291,8 @@ def test_a_continuation_point_is_the_servers_own_or_refused(
 ) -> None:
     keep(repository, tmp_path, [fault(0.01), fault(0.02)])
     details = details_of(FIRST, FAR, 1)
-    assert answer(settings, LEVEL, details).ContinuationPoint
-    refused = answer(settings, LEVEL, details, b"not the server's")
+    assert answer(settings, LOAD, details).ContinuationPoint
+    refused = answer(settings, LOAD, details, b"not the server's")
     assert refused.StatusCode.value == ua.StatusCodes.BadContinuationPointInvalid
 
 
@@ -322,7 +346,7 @@ def test_bounds_are_told_where_they_are_asked_for(
         return None if second is None else FIRST + second * SECOND
 
     async def ask(client: Client) -> dict[object, list[int | str]]:
-        level = node(client, LEVEL)
+        level = node(client, LOAD)
         return {
             (*asked, bounds): told_in(
                 await level.history_read(details_of(at(asked[0]), at(asked[1]), asked[2], bounds=bounds))
@@ -347,7 +371,7 @@ def test_bounds_count_among_the_values_of_an_answer(
         told: list[list[int | str]] = []
         continuation = None
         while not told or continuation is not None:
-            result = await node(client, LEVEL).history_read(details, continuation)
+            result = await node(client, LOAD).history_read(details, continuation)
             told.append(told_in(result))
             continuation = result.ContinuationPoint
         return told

@@ -31,6 +31,7 @@ from testing.service.diagnosed import add_diagnosed
 from testing.service.gateways import running_gateways
 from testing.service.job_runner import register_runner
 from testing.service.links import set_link_state
+from testing.service.observations import observation
 from testing.service.plants import NOW_NS, SECOND_NS, fault
 from testing.waiting import eventually
 from tests.service.gateways.opcua.clients import (
@@ -223,8 +224,9 @@ def test_open62541_reads_encrypted_with_history_and_has_a_motor_recorded(
     add_user(repository, "otto", Role.OPERATOR)
     store = FolderStore(tmp_path / "recordings")
     register_runner(repository)
-    for number, level in enumerate((0.01, 0.02, 0.03)):
-        add_diagnosed(repository, store, fault(level), NOW_NS + number * SECOND_NS, name=f"E{number}")
+    for number in range(3):
+        seen_then = observation(number - 3.0)
+        add_diagnosed(repository, store, fault(), seen_then.time_ns, name=f"E{number}", observed=seen_then)
     tell(repository, FAULT)
     chosen = settings_of("opcua", tmp_path)
     folder = tmp_path / "client"
@@ -243,7 +245,7 @@ def test_open62541_reads_encrypted_with_history_and_has_a_motor_recorded(
     assert status == ua.StatusCodes.Good
     assert datetime.fromisoformat(time_said) == datetime.fromtimestamp(NOW_NS // SECOND_NS, UTC)
     assert seen["told"]["FAN-A2"][0] == ua.StatusCodes.BadNoData
-    assert seen["history"] == [0.01, 0.02, 0.03]
+    assert seen["history"] == [0.0121] * 3
     assert ("recording-requested", "otto", f"opcua {LOOPBACK}") in done(repository)
     assert repository.recording_requests(motor="PUMP-A1", limit=1).items
 
