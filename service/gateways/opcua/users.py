@@ -29,6 +29,9 @@ log = structlog.get_logger(__name__)
 ADDRESS = "opcua"
 """Before the host of a client, for the audit trail and for the count of logins that failed."""
 
+WAY: Final = "password"
+"""How people say here who they are, as the audit trail has it."""
+
 LOGINS_AT_ONCE: Final = 2
 """Logins that are looked at at a time: a password takes 64 MiB."""
 
@@ -114,15 +117,18 @@ class ServiceUsers(UserManager):  # type: ignore[misc]
         address = f"{ADDRESS} {host}"
         try:
             account = await self._threads.run(partial(self._account, account_of(name), password, address))
+            user = PlantUser(UserRole.User, account.name, account, address)
+            if not user.may(Permission.VIEW):
+                raise ServiceError(ua.StatusCodes.BadUserAccessDenied)
+            await self._threads.run(partial(self._note_login, actor_of(account, address)))
         except (LoginLockedError, LoginRefusedError) as refused:
             log.warning("a client is not let in", reason=str(refused))
             raise ServiceError(ua.StatusCodes.BadUserAccessDenied) from refused
         except SQLAlchemyError as error:
             log.warning("a client is not let in", reason=database_trouble(error))
             raise ServiceError(ua.StatusCodes.BadResourceUnavailable) from error
-        user = PlantUser(UserRole.User, account.name, account, address)
-        if not user.may(Permission.VIEW):
-            raise ServiceError(ua.StatusCodes.BadUserAccessDenied)
+        except NotFoundError as gone:
+            raise ServiceError(ua.StatusCodes.BadUserAccessDenied) from gone
         return user
 
     def get_user(
@@ -150,6 +156,10 @@ class ServiceUsers(UserManager):  # type: ignore[misc]
         if account is None:
             raise LoginRefusedError
         return account
+
+    def _note_login(self, by: Actor) -> None:
+        """Have the audit trail and the user's last login tell of it. Raises NotFoundError."""
+        self._repository.note_login(by.name, WAY, by=by, now_ns=time.time_ns())
 
     def _known(self, name: str) -> Account | None:
         try:

@@ -1,6 +1,7 @@
 """Logins of users, until they end."""
 
 from sqlalchemy import delete, select, update
+from sqlalchemy.orm import Session
 
 from service.audit.actions import AuditAction
 from service.storage.errors import NotFoundError
@@ -25,10 +26,7 @@ class UserSessionRows(Sessions):
         Raises NotFoundError (the user was deleted, or disabled, meanwhile).
         """
         with self._write() as session:
-            row = session.get(UserRow, user, with_for_update=True)
-            if row is None or row.disabled:
-                raise NotFoundError("user", user)
-            row.last_login_ns, row.last_login_origin = now_ns, by.origin
+            _note_login(session, user, way, by=by, now_ns=now_ns)
             over = (UserSessionRow.created_ns < oldest_ns) | (UserSessionRow.used_ns < idle_since_ns)
             session.execute(delete(UserSessionRow).where(over))
             latest = (
@@ -42,9 +40,14 @@ class UserSessionRows(Sessions):
             session.add(
                 UserSessionRow(digest=digest, user=user, origin=by.origin, created_ns=now_ns, used_ns=now_ns)
             )
-            note_change(
-                session, by, AuditAction.LOGGED_IN, ("user", user), now_ns=now_ns, after={"by_way_of": way}
-            )
+
+    def note_login(self, user: str, way: str, *, by: Actor, now_ns: int) -> None:
+        """Note a login whose session a gateway keeps.
+
+        Raises NotFoundError (the user was deleted, or disabled, meanwhile).
+        """
+        with self._write() as session:
+            _note_login(session, user, way, by=by, now_ns=now_ns)
 
     def session_of(self, digest: str) -> UserSession | None:
         """Return the login with this secret, over or not; None where there is none."""
@@ -79,3 +82,11 @@ class UserSessionRows(Sessions):
             row.sessions_ended_ns = now_ns
             end_sessions(session, user)
             note_change(session, by, AuditAction.SESSIONS_ENDED, ("user", user), now_ns=now_ns)
+
+
+def _note_login(session: Session, user: str, way: str, *, by: Actor, now_ns: int) -> None:
+    row = session.get(UserRow, user, with_for_update=True)
+    if row is None or row.disabled:
+        raise NotFoundError("user", user)
+    row.last_login_ns, row.last_login_origin = now_ns, by.origin
+    note_change(session, by, AuditAction.LOGGED_IN, ("user", user), now_ns=now_ns, after={"by_way_of": way})

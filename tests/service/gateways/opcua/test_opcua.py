@@ -189,6 +189,8 @@ def test_users_may_what_their_roles_allow(repository: Repository, tmp_path: Path
         request = asyncio.run(trigger("otto"))
     assert repository.recording_request(request).motor == "PUMP-A1"
     assert ("recording-requested", "otto", f"opcua {LOOPBACK}") in done(repository)
+    assert ("logged-in", "otto", f"opcua {LOOPBACK}") in done(repository)
+    assert repository.user("otto").last_login_origin == f"opcua {LOOPBACK}"
 
 
 def test_an_alarm_is_acknowledged_by_who_may(repository: Repository, tmp_path: Path) -> None:
