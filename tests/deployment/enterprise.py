@@ -239,6 +239,8 @@ def the_documented_backup_restores(enterprise: Enterprise) -> None:
         enterprise.keep_log()
         started_s = time.monotonic()
         enterprise.compose.follow(restore, directory)
+        enterprise.wait("the service is ready", lambda: enterprise.service.is_ready(), START_LIMIT_S)
+        enterprise.log_in()  # the volume of the token was emptied too
         enterprise.wait_for_links()
         say(f"  restored in {time.monotonic() - started_s:.1f} s, with taking down and starting all")
     enterprise.require_continuation(before)
