@@ -101,8 +101,8 @@ class Records:
     def linearise(self, vector: Array, free: Mask) -> tuple[list[Array], list[Array]]:
         """Return the residuals of each record and the derivatives of its modelled current.
 
-        Derivatives are zero after coordinates that are not free. Under a law that drives the motor the faster
-        the faster it turns, a current can grow without bound.
+        Derivatives are zero after coordinates that are not free. Where the inertia is small beside a load
+        that grows with the square of the speed, the stepped current can grow without bound.
 
         Parameters
         ----------

@@ -1,11 +1,15 @@
 """What the variables of a motor that have a history told in the past."""
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
-from typing import NamedTuple, Protocol
+from typing import Generic, NamedTuple, Protocol, TypeVar
 
 from core.diagnosis.verdict import Verdict
 from service.storage import Repository
 from service.storage.records import ConditionPoint, Page, Quantity, TrendPoint
+
+Point = TypeVar("Point")
 
 
 class PastValue(NamedTuple):
@@ -31,43 +35,28 @@ def trend_of(repository: Repository, motor: str, quantity: Quantity) -> FigureTr
     The load is each record's own.
     """
     if quantity == "mu_f":
-        return partial(_levels, repository, motor)
-    return partial(_of_records, repository, motor, quantity)
+        return _Values(partial(repository.condition_trend, motor), _level)
+    return _Values(partial(repository.trend, motor, quantity), _of_record)
 
 
-def _levels(
-    repository: Repository,
-    motor: str,
-    *,
-    limit: int,
-    from_ns: int | None = None,
-    to_ns: int | None = None,
-    descending: bool = False,
-) -> tuple[PastValue, ...]:
-    page: Page[ConditionPoint] = repository.condition_trend(
-        motor, limit=limit, from_ns=from_ns, to_ns=to_ns, descending=descending
-    )
-    return tuple(PastValue(point.time_ns, point.mu_f, point.mu_f is not None) for point in page.items)
+@dataclass(frozen=True, slots=True)
+class _Values(Generic[Point]):
+    """Asks the database for a page of points, and makes values of them."""
+
+    ask: Callable[..., Page[Point]]
+    to_value: Callable[[Point], PastValue]
+
+    def __call__(
+        self, *, limit: int, from_ns: int | None = None, to_ns: int | None = None, descending: bool = False
+    ) -> tuple[PastValue, ...]:
+        page = self.ask(limit=limit, from_ns=from_ns, to_ns=to_ns, descending=descending)
+        return tuple(map(self.to_value, page.items))
 
 
-def _of_records(
-    repository: Repository,
-    motor: str,
-    quantity: Quantity,
-    *,
-    limit: int,
-    from_ns: int | None = None,
-    to_ns: int | None = None,
-    descending: bool = False,
-) -> tuple[PastValue, ...]:
-    page: Page[TrendPoint] = repository.trend(
-        motor, quantity, limit=limit, from_ns=from_ns, to_ns=to_ns, descending=descending
-    )
-    return tuple(
-        PastValue(
-            point.recorded_ns,
-            point.value,
-            point.value is not None and point.verdict is not Verdict.UNDIAGNOSABLE,
-        )
-        for point in page.items
-    )
+def _level(point: ConditionPoint) -> PastValue:
+    return PastValue(point.time_ns, point.mu_f, point.mu_f is not None)
+
+
+def _of_record(point: TrendPoint) -> PastValue:
+    is_good = point.value is not None and point.verdict is not Verdict.UNDIAGNOSABLE
+    return PastValue(point.recorded_ns, point.value, is_good)

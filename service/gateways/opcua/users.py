@@ -64,9 +64,7 @@ def actor_of(account: Account, address: str) -> Actor:
 
 
 def has_changed(repository: Repository, account: Account) -> bool:
-    """Return whether an account is deleted, disabled, or has other roles or another password by now.
-
-    So it has where all sessions of its user were ended.
+    """Return whether an account was deleted, disabled or logged out, or has other roles or another password.
 
     Raises SQLAlchemyError where the database does not answer.
     """
