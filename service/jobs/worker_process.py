@@ -10,15 +10,26 @@ import threading
 from collections.abc import Callable
 from multiprocessing.connection import wait
 from multiprocessing.synchronize import Semaphore
+from typing import Final
+
+from pebble import CONSTS
 
 from service.process.capabilities import Capability, give_up
 from service.process.termination import leave_to_parent
+
+LOCK_TIMEOUT_S: Final = 10.0
+"""How long a worker waits for the pipe that all share.
+
+One that is killed while it has the pipe keeps it locked, and nothing is diagnosed until all others have given
+up twice. The library waits for a minute each time.
+"""
 
 
 def prepare(prepare_worker: Callable[[], None], prepared: Semaphore) -> None:
     """Prepare a worker, in that worker; tell the pool when it is done."""
     # It reads what relays send, and needs no socket.
     give_up([Capability.NET_RAW])
+    CONSTS.channel_lock_timeout = LOCK_TIMEOUT_S
     prepare_worker()
     prepared.release()
 

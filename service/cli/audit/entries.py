@@ -8,6 +8,7 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
+from rich.text import Text
 from sqlalchemy.exc import SQLAlchemyError
 
 from core.error_words import one_line
@@ -15,7 +16,7 @@ from core.time_stamps import nanoseconds, rfc3339
 from service.audit.actions import AuditAction
 from service.audit.entries import AuditEntry
 from service.cli.output import CommandError, failing_clearly
-from service.cli.rows import print_rows, require_one_format
+from service.cli.rows import Column, print_rows, require_one_format
 from service.client.rest_client import Document, ServiceClient, ServiceError
 from service.client.verdicts import to_the_second
 from service.configuration.settings import Settings, SettingsError
@@ -28,15 +29,15 @@ FIELDS = (
     *("number", "time", "actor", "origin", "roles", "action", "subject_kind", "subject", "before", "after"),
     *("previous", "hash"),
 )
-COLUMNS = {
+COLUMNS: Mapping[str, Column] = {
     "number": lambda row: str(row["number"]),
     "time": lambda row: to_the_second(row["time"]),
-    "who": lambda row: str(row["actor"]),
-    "from": lambda row: str(row["origin"]),
-    "what": lambda row: str(row["action"]),
-    "of": lambda row: f"{row['subject_kind']} {row['subject']}",
-    "change": lambda row: _change(row),
+    "who, from": lambda row: _lines(row["actor"], row["origin"]),
+    "what, of what, before -> after": lambda row: _lines(
+        row["action"], f"{row['subject_kind']} {row['subject']}", _change(row)
+    ),
 }
+"""Few, so that a terminal of 80 columns has room for them: what belongs together is one below the other."""
 
 
 def show_entries(
@@ -136,10 +137,15 @@ def _flat(entry: Document) -> Document:
     return {**entry, **texts, "roles": " ".join(roles) if isinstance(roles, list) else roles}
 
 
+def _lines(*texts: object) -> Text:
+    """Return a cell with a line for each of these that says something."""
+    return Text("\n".join(filter(None, (one_line(str(text)) for text in texts))))
+
+
 def _change(entry: Document) -> str:
-    """Return the values before and after, in one line."""
+    """Return the values before and after."""
     before, after = (_words(entry[name]) for name in ("before", "after"))
-    return one_line(f"{before} -> {after}" if before else after)
+    return f"{before} -> {after}" if before else after
 
 
 def _words(values: object) -> str:

@@ -7,6 +7,7 @@ import time
 from collections.abc import Awaitable, Callable, Coroutine, Iterable
 from itertools import islice
 from threading import Event
+from types import TracebackType
 from typing import NamedTuple
 
 from aiomqtt import Client, MqttError, ProtocolVersion, Will
@@ -92,6 +93,16 @@ class Broker(Client):
         while self._client.socket() is not None:
             await asyncio.sleep(LOOK_S)
         raise MqttError("the connection was lost")
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        try:
+            await super().__aexit__(kind, error, trace)
+        finally:
+            # Why it was lost is told by then, or of no use: asyncio would complain that nobody read it.
+            if self._disconnected.done() and not self._disconnected.cancelled():
+                self._disconnected.exception()
 
     async def leave_with_will(self) -> None:
         """End the connection; the broker tells the will, where it speaks MQTT 5. Raises MqttError."""

@@ -18,6 +18,9 @@ VERSION = version("statorwatch")
 NAMES_OF_TIMES: Final = {"running_ns": "running_as_of", "unbalance_ns": "unbalance_as_of"}
 """Of the figures that have times of their own; what other times are of says their name."""
 
+INTERVALS: Final = ("mu_f_ci95", "change_ci95")
+"""Two numbers each, as the state of a motor and the REST API have them."""
+
 
 def offline() -> bytes:
     """Return the status that the broker tells when the gateway is gone. It has no time: nobody knows it."""
@@ -46,7 +49,11 @@ def alarm_change(change: AlarmChange, alarm: Alarm) -> bytes:
 
 def condition_change(change: ConditionChange) -> bytes:
     """Return how a motor's condition changed, and what caused it."""
-    return as_json({"id": change.id, **_table(change)})
+    told = _table(change)
+    for name in INTERVALS:
+        del told[f"{name}_low"], told[f"{name}_high"]
+        told[name] = getattr(change, name)
+    return as_json({"id": change.id, **told})
 
 
 def as_json(document: Mapping[str, object]) -> bytes:

@@ -18,7 +18,9 @@ from asyncua.server.binary_server_asyncio import BinaryServer, OPCUAProtocol
 from asyncua.server.uaprocessor import UaProcessor
 from asyncua.ua.ua_binary import struct_from_binary, uatcp_to_binary
 
+from core.error_words import one_line
 from service.gateways.opcua.sessions import BoundSession, PlantServer
+from service.gateways.opcua.trusted_clients import application_uris
 from service.gateways.opcua.users import PlantUser, ServiceUsers, logged_in
 
 log = structlog.get_logger(__name__)
@@ -261,8 +263,21 @@ class _StrictProcessor(UaProcessor):  # type: ignore[misc]
             raise ServiceError(ua.StatusCodes.BadSecurityPolicyRejected)
 
     def _check_certificate(self, session: ua.CreateSessionParameters) -> None:
-        """Refuse a client that names no certificate, or another's: it is asked for whether it is trusted."""
+        """Refuse a client that names no certificate, or another's: it is asked for whether it is trusted.
+
+        OPC 10000-4 (5.6.2) has the certificate name the application that the client says it is.
+        """
         policy = self._connection.security_policy
-        is_secured = policy.Mode != ua.MessageSecurityMode.None_
-        if is_secured and not (session.ClientCertificate or b"").startswith(policy.peer_certificate):
+        if policy.Mode == ua.MessageSecurityMode.None_:
+            return
+        if not (session.ClientCertificate or b"").startswith(policy.peer_certificate):
             raise ServiceError(ua.StatusCodes.BadCertificateInvalid)
+        said, signed = session.ClientDescription.ApplicationUri, application_uris(policy.peer_certificate)
+        if said not in signed:
+            log.warning(
+                "an OPC UA client's certificate is another application's",
+                client=str(self.name),
+                application=one_line(str(said)),
+                of_certificate=one_line(", ".join(signed)),
+            )
+            raise ServiceError(ua.StatusCodes.BadCertificateUriInvalid)

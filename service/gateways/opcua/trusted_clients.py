@@ -71,6 +71,16 @@ class TrustedClients(TrustStore):  # type: ignore[misc]  # asyncua has no types
         return stamps, troubles
 
 
+def application_uris(certificate: bytes) -> list[str]:
+    """Return the URIs of the application whose certificate (DER) it is. OPC 10000-6 (6.2.2) wants one."""
+    try:
+        extensions = x509.load_der_x509_certificate(certificate).extensions
+        names = extensions.get_extension_for_class(x509.SubjectAlternativeName).value
+    except (ValueError, x509.InvalidVersion, x509.ExtensionNotFound, x509.DuplicateExtension):
+        return []
+    return names.get_values_for_type(x509.UniformResourceIdentifier)
+
+
 def _certificates(content: bytes) -> list[x509.Certificate]:
     """Return the certificates of a file: any number in PEM, one in DER. Raises ValueError, InvalidVersion."""
     if b"-----BEGIN" in content:

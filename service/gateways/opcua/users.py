@@ -15,6 +15,7 @@ from asyncua.crypto.permission_rules import SimpleRoleRuleset, User, UserRole
 from asyncua.server.user_managers import UserManager
 from sqlalchemy.exc import SQLAlchemyError
 
+from core.error_words import one_line
 from service.access.logins import LoginLockedError, LoginRefusedError, account_of, attempt, check_password
 from service.access.permissions import Permission, permissions_of
 from service.configuration.access import AccessSettings
@@ -112,18 +113,19 @@ class ServiceUsers(UserManager):  # type: ignore[misc]
 
     async def log_in(self, name: str, password: str, *, host: str) -> PlantUser:
         """Return whose name and password it is. host: where from. Raises ServiceError."""
-        address = f"{ADDRESS} {host}"
+        address, wanted = f"{ADDRESS} {host}", account_of(name)
+        told = log.bind(user=one_line(wanted), client=host)
         try:
-            account = await self._threads.run(partial(self._account, account_of(name), password, address))
+            account = await self._threads.run(partial(self._account, wanted, password, address))
             user = PlantUser(UserRole.User, account.name, account, address)
             if not user.may(Permission.VIEW):
                 raise ServiceError(ua.StatusCodes.BadUserAccessDenied)
             await self._threads.run(partial(self._note_login, actor_of(account, address)))
         except (LoginLockedError, LoginRefusedError) as refused:
-            log.warning("a client is not let in", reason=str(refused))
+            told.warning("a client is not let in", reason=str(refused))
             raise ServiceError(ua.StatusCodes.BadUserAccessDenied) from refused
         except SQLAlchemyError as error:
-            log.warning("a client is not let in", reason=database_trouble(error))
+            told.warning("a client is not let in", reason=database_trouble(error))
             raise ServiceError(ua.StatusCodes.BadResourceUnavailable) from error
         except NotFoundError as gone:
             raise ServiceError(ua.StatusCodes.BadUserAccessDenied) from gone

@@ -95,6 +95,19 @@ def test_entries_are_listed(repository: Repository, where: list[str], run: Run) 
     assert run("list", *where, "--to", "soon")[0] == 1
 
 
+def test_an_entry_is_read_at_a_glance_in_80_columns(
+    repository: Repository, where: list[str], run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    note(repository)
+    lines = run("list", *where)[1].splitlines()
+    assert max(map(len, lines)) <= 80
+    (first,) = (number for number, line in enumerate(lines) if "note-added" in line)
+    assert all(word in lines[first] for word in ("1", "2025-10-09 08:53:20 UTC", "anna"))
+    assert all(word in lines[first + 1] for word in ("10.0.0.7", "motor PUMP-0"))
+    assert "text =1+1 bearing 0" in lines[first + 2]
+
+
 def test_whoever_lists_without_a_service_is_told_of_a_wrong_action(where: list[str], run: Run) -> None:
     assert "note-added" in run("list", *where, "--action", "note-addet")[2]
 

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import socket
 import subprocess
@@ -27,6 +28,7 @@ from testing.waiting import eventually, wait_until
 from tests.service.gateways.mqtt.conftest import settings_of
 
 STATUS = "statorwatch/status"
+PAGE = Path("docs/reference/mqtt.md")
 PUMP = "statorwatch/motors/FACTORY_A/PUMP-A1/state"
 
 
@@ -38,6 +40,12 @@ def last(heard: Sequence[Heard], topic: str) -> dict[str, object]:
 
 def documents(heard: Sequence[Heard], topic: str) -> list[dict[str, object]]:
     return [json.loads(one.payload) for one in list(heard) if one.topic == topic and one.payload]
+
+
+def documented(topic: str) -> set[str]:
+    """The fields that the page of the topics names for this one."""
+    section = PAGE.read_text(encoding="utf-8").split(f"## `statorwatch/{topic}`")[1].split("## ")[0]
+    return {name for line in section.splitlines() for name in re.findall(r"`(\w+)`", line.split(" | ")[0])}
 
 
 def test_the_state_of_motors_relays_and_alarms_is_kept_by_the_broker(
@@ -60,6 +68,14 @@ def test_the_state_of_motors_relays_and_alarms_is_kept_by_the_broker(
             assert last(later, "/FAN-A2/state")["quality"] == "bad"
             alarms = [one for one in later if one.topic.startswith("statorwatch/alarms/")]
             assert [json.loads(one.payload)["kind"] for one in alarms] == ["condition-fault"]
+        assert documented("status") == last(heard, STATUS).keys()
+        assert documented("motors/SITE/MOTOR/state") == pump.keys()
+        assert documented("relays/SITE/RELAY/state") == last(later, "/A1_SEL710/state").keys()
+        assert documented("alarms/ID/state") == json.loads(alarms[0].payload).keys()
+        change = last(heard, "changes/conditions")
+        assert documented("changes/conditions") == change.keys()
+        assert documented("changes/alarms") == last(heard, "changes/alarms").keys()
+    assert (change["mu_f"], change["mu_f_ci95"]) == (0.0121, [0.009, 0.0225])
     assert (pump["mu_f"], pump["mu_f_ci95"], pump["phase"]) == (0.0121, [0.009, 0.0225], "b")
     assert (pump["quality"], pump["device_health"]) == ("good", "failure")
     assert pump["as_of"] == rfc3339(NOW_NS)

@@ -14,6 +14,7 @@ from asyncua.crypto.security_policies import (
 )
 from cryptography import x509
 from cryptography.hazmat.primitives import hashes, serialization
+from cryptography.hazmat.primitives.asymmetric import rsa
 
 from service.configuration.settings import Settings
 from service.gateways.opcua.certificate import own_certificate
@@ -66,6 +67,23 @@ def signed_by(authority: Identity, own: Card) -> Card:
     return Card(certificate, own.key)
 
 
+def without_names(own: Card) -> None:
+    """Have the certificate say nothing of the application."""
+    made = x509.load_der_x509_certificate(own.certificate.read_bytes())
+    key = serialization.load_pem_private_key(own.key.read_bytes(), password=None)
+    assert isinstance(key, rsa.RSAPrivateKey)
+    builder = x509.CertificateBuilder(
+        made.issuer,
+        made.subject,
+        made.public_key(),
+        made.serial_number,
+        made.not_valid_before_utc,
+        made.not_valid_after_utc,
+    )
+    signed = builder.sign(key, hashes.SHA256())
+    own.certificate.write_bytes(signed.public_bytes(serialization.Encoding.DER))
+
+
 def trust(folder: Path, *certificates: Path) -> str:
     """Make a folder of the certificates that are trusted."""
     folder.mkdir()
@@ -81,10 +99,11 @@ async def secured(
     policy: Callable[..., object] = SecurityPolicyBasic256Sha256,
     mode: ua.MessageSecurityMode = SIGN_AND_ENCRYPT,
     password: str = PASSWORD,
+    uri: str = URI,
 ) -> Client:
-    """A client of the user otto, not connected yet."""
+    """A client of the user otto, not connected yet. uri: of the application that it says it is."""
     client = Client(address_of(settings))
-    client.application_uri = URI
+    client.application_uri = uri
     client.set_user("otto")
     client.set_password(password)
     await client.set_security(
@@ -104,9 +123,10 @@ async def state(
     policy: Callable[..., object] = SecurityPolicyBasic256Sha256,
     mode: ua.MessageSecurityMode = SIGN_AND_ENCRYPT,
     password: str = PASSWORD,
+    uri: str = URI,
 ) -> str:
     """What such a client reads as the motor's state, or why it is not let in."""
-    client = await secured(settings, own, policy=policy, mode=mode, password=password)
+    client = await secured(settings, own, policy=policy, mode=mode, password=password, uri=uri)
     try:
         async with client:
             return str(await node(client, STATE).read_value())
@@ -227,6 +247,24 @@ def test_a_stranger_has_no_session_that_names_no_certificate_or_anothers(
         assert asyncio.run(session_naming(chosen, stranger, named)) == "BadCertificateInvalid"
         own = known.certificate.read_bytes()
         assert asyncio.run(session_naming(chosen, known, own)) == "a session"
+
+
+def test_a_certificate_lets_in_the_application_alone_that_it_names(
+    repository: Repository, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    add_user(repository, "otto", Role.VIEWER)
+    tell(repository, HEALTHY)
+    own, unnamed = card(tmp_path / "client"), card(tmp_path / "unnamed")
+    without_names(unnamed)
+    chosen = settings_of("opcua", tmp_path)
+    with running_gateways(chosen):
+        assert asyncio.run(state(chosen, own)) == "healthy"
+        assert asyncio.run(state(chosen, own, uri="urn:statorwatch:another")) == "BadCertificateUriInvalid"
+        assert asyncio.run(state(chosen, unnamed)) == "BadCertificateUriInvalid"
+    told = [line for line in capfd.readouterr().err.splitlines() if "another application's" in line]
+    assert len(told) == 2
+    assert "urn:statorwatch:another" in told[0]
+    assert URI in told[0]
 
 
 def test_nobody_comes_in_where_nobody_is_trusted(repository: Repository, tmp_path: Path) -> None:

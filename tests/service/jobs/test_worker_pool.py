@@ -1,0 +1,72 @@
+"""A worker that is killed while it has the pipe which all workers share."""
+
+import os
+import signal
+from collections.abc import Callable, Iterator
+from concurrent.futures import BrokenExecutor
+from contextlib import contextmanager
+from typing import NoReturn
+
+from pebble import CONSTS, ProcessExpired
+
+from service.jobs.worker_pool import WorkerPool
+from service.jobs.worker_process import LOCK_TIMEOUT_S
+from service.jobs.workers import NoWorkersError
+from testing.waiting import wait_until
+
+SHORT_S = 0.2
+
+
+class KilledOnTheWay:
+    """Kills the worker that sends it, which has the lock of the pipe then."""
+
+    def __reduce__(self) -> NoReturn:
+        os.kill(os.getpid(), signal.SIGKILL)
+        raise AssertionError("the process goes on")
+
+
+def killed_on_the_way(_task: int) -> KilledOnTheWay:
+    return KilledOnTheWay()
+
+
+def lock_timeout_s(_task: int) -> float:
+    return CONSTS.channel_lock_timeout
+
+
+def prepare() -> None:
+    """Load nothing."""
+
+
+def prepare_for_short_waits() -> None:
+    CONSTS.channel_lock_timeout = SHORT_S
+
+
+@contextmanager
+def running_pool(prepare_worker: Callable[[], None]) -> Iterator[WorkerPool]:
+    pool = WorkerPool(2, prepare_worker, is_ending=lambda: False)
+    try:
+        pool.renew()
+        yield pool
+    finally:
+        pool.stop()
+
+
+def answers(pool: WorkerPool) -> bool:
+    """Whether a worker does a task, as far as the runner's own care for its workers brings that about."""
+    if pool.has_ended():
+        pool.renew()
+    try:
+        return pool.schedule(lock_timeout_s, 0, timeout_s=60).result(timeout=30) > 0
+    except (NoWorkersError, ProcessExpired, BrokenExecutor):
+        return False
+
+
+def test_others_take_over_from_a_worker_that_is_killed_while_it_answers() -> None:
+    with running_pool(prepare_for_short_waits) as pool:
+        assert isinstance(pool.schedule(killed_on_the_way, 0, timeout_s=60).exception(30), ProcessExpired)
+        wait_until(lambda: answers(pool), "a worker to do a task")
+
+
+def test_no_worker_waits_long_for_the_pipe() -> None:
+    with running_pool(prepare) as pool:
+        assert pool.schedule(lock_timeout_s, 0, timeout_s=60).result(30) == LOCK_TIMEOUT_S
