@@ -17,6 +17,9 @@ from pebble import CONSTS
 from service.process.capabilities import Capability, give_up
 from service.process.termination import leave_to_parent
 
+NICENESS: Final = 5
+"""Records are fetched first: a relay may overwrite what nobody has fetched, and a diagnosis can wait."""
+
 LOCK_TIMEOUT_S: Final = 10.0
 """How long a worker waits for the pipe that all share.
 
@@ -29,6 +32,7 @@ def prepare(prepare_worker: Callable[[], None], prepared: Semaphore) -> None:
     """Prepare a worker, in that worker; tell the pool when it is done."""
     # It reads what relays send, and needs no socket.
     give_up([Capability.NET_RAW])
+    os.nice(NICENESS)
     CONSTS.channel_lock_timeout = LOCK_TIMEOUT_S
     prepare_worker()
     prepared.release()

@@ -1,4 +1,4 @@
-"""A worker that is killed while it has the pipe which all workers share."""
+"""Workers that share a pipe, and let others go first."""
 
 import os
 import signal
@@ -10,7 +10,7 @@ from typing import NoReturn
 from pebble import CONSTS, ProcessExpired
 
 from service.jobs.worker_pool import WorkerPool
-from service.jobs.worker_process import LOCK_TIMEOUT_S
+from service.jobs.worker_process import LOCK_TIMEOUT_S, NICENESS
 from service.jobs.workers import NoWorkersError
 from testing.waiting import wait_until
 
@@ -31,6 +31,10 @@ def killed_on_the_way(_task: int) -> KilledOnTheWay:
 
 def lock_timeout_s(_task: int) -> float:
     return CONSTS.channel_lock_timeout
+
+
+def niceness(_task: int) -> int:
+    return os.getpriority(os.PRIO_PROCESS, 0)
 
 
 def prepare() -> None:
@@ -65,6 +69,12 @@ def test_others_take_over_from_a_worker_that_is_killed_while_it_answers() -> Non
     with running_pool(prepare_for_short_waits) as pool:
         assert isinstance(pool.schedule(killed_on_the_way, 0, timeout_s=60).exception(30), ProcessExpired)
         wait_until(lambda: answers(pool), "a worker to do a task")
+
+
+def test_workers_let_those_go_first_who_fetch_records() -> None:
+    expected = min(os.getpriority(os.PRIO_PROCESS, 0) + NICENESS, 19)
+    with running_pool(prepare) as pool:
+        assert pool.schedule(niceness, 0, timeout_s=60).result(30) == expected
 
 
 def test_no_worker_waits_long_for_the_pipe() -> None:
