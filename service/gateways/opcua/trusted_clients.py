@@ -12,6 +12,15 @@ log = structlog.get_logger(__name__)
 
 CERTIFICATES: Final = (".der", ".pem", ".crt", ".cer")
 
+UNREADABLE: Final = (
+    ValueError,
+    x509.InvalidVersion,
+    x509.ExtensionNotFound,
+    x509.DuplicateExtension,
+    x509.UnsupportedGeneralNameType,
+)
+"""What a strange certificate may raise where it is asked for its names."""
+
 Stamp = tuple[int, ...]
 """Times, size and number of a file."""
 
@@ -76,7 +85,7 @@ def application_uris(certificate: bytes) -> list[str]:
     try:
         extensions = x509.load_der_x509_certificate(certificate).extensions
         names = extensions.get_extension_for_class(x509.SubjectAlternativeName).value
-    except (ValueError, x509.InvalidVersion, x509.ExtensionNotFound, x509.DuplicateExtension):
+    except UNREADABLE:
         return []
     return names.get_values_for_type(x509.UniformResourceIdentifier)
 

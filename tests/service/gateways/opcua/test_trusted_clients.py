@@ -6,11 +6,15 @@ import pytest
 from cryptography import x509
 from cryptography.hazmat.primitives import serialization
 
-from service.gateways.opcua.trusted_clients import TrustedClients
+from service.gateways.opcua.certificate import own_certificate
+from service.gateways.opcua.trusted_clients import TrustedClients, application_uris
+from testing.ports import LOOPBACK
 from testing.relays.certificates import Identity, identity
 
 VERSION_3 = b"\xa0\x03\x02\x01\x02"
 VERSION_6 = b"\xa0\x03\x02\x01\x05"
+ADDRESS = b"\x87\x04\x7f\x00\x00\x01"
+X400_ADDRESS = b"\xa3\x04\x7f\x00\x00\x01"
 
 
 @pytest.fixture
@@ -66,3 +70,20 @@ def test_several_certificates_may_be_in_one_file(folder: Path, tmp_path: Path, c
     trusted = TrustedClients(folder)
     assert all(trusted.is_trusted(one.certificate) for one in (client, other))
     assert isinstance(other.certificate, x509.Certificate)
+
+
+@pytest.mark.parametrize(
+    ("read", "written"),
+    [(b"", b""), (ADDRESS, X400_ADDRESS), (VERSION_3, VERSION_6), (b"\x30\x82", b"\x30\x83")],
+)
+def test_a_certificate_that_names_no_application_is_nobodys(
+    client: Identity, read: bytes, written: bytes
+) -> None:
+    certificate = der(client)
+    assert read in certificate
+    assert application_uris(certificate.replace(read, written, 1)) == []
+
+
+def test_a_certificate_names_its_application(tmp_path: Path) -> None:
+    certificate, _ = own_certificate(tmp_path, "urn:plant:client", LOOPBACK)
+    assert application_uris(certificate.read_bytes()) == ["urn:plant:client"]
