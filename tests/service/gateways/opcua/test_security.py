@@ -48,17 +48,22 @@ def card(folder: Path) -> Card:
     return Card(*own_certificate(folder, URI, LOOPBACK))
 
 
-def signed_by(authority: Identity, own: Card) -> Card:
-    """The same client's, with the authority's signature instead of its own."""
-    made = x509.load_der_x509_certificate(own.certificate.read_bytes())
-    builder = x509.CertificateBuilder(
-        authority.certificate.subject,
+def reissued(made: x509.Certificate, issuer: x509.Name) -> x509.CertificateBuilder:
+    """The same certificate without its extensions, to be signed again."""
+    return x509.CertificateBuilder(
+        issuer,
         made.subject,
         made.public_key(),
         made.serial_number,
         made.not_valid_before_utc,
         made.not_valid_after_utc,
     )
+
+
+def signed_by(authority: Identity, own: Card) -> Card:
+    """The same client's, with the authority's signature instead of its own."""
+    made = x509.load_der_x509_certificate(own.certificate.read_bytes())
+    builder = reissued(made, authority.certificate.subject)
     for extension in made.extensions:
         builder = builder.add_extension(extension.value, critical=extension.critical)
     certificate = own.certificate.with_name("signed.der")
@@ -72,15 +77,7 @@ def without_names(own: Card) -> None:
     made = x509.load_der_x509_certificate(own.certificate.read_bytes())
     key = serialization.load_pem_private_key(own.key.read_bytes(), password=None)
     assert isinstance(key, rsa.RSAPrivateKey)
-    builder = x509.CertificateBuilder(
-        made.issuer,
-        made.subject,
-        made.public_key(),
-        made.serial_number,
-        made.not_valid_before_utc,
-        made.not_valid_after_utc,
-    )
-    signed = builder.sign(key, hashes.SHA256())
+    signed = reissued(made, made.issuer).sign(key, hashes.SHA256())
     own.certificate.write_bytes(signed.public_bytes(serialization.Encoding.DER))
 
 
