@@ -1,13 +1,14 @@
 """Ten years of a plant of 500 motors: how long answers take, the size on disk, vacuum, and the migration.
 
     python -m benchmarks.storage.ten_years --directory DIR [--database sqlite|postgresql] [--part 1.0]
-                                           [--from-revision 0050] [--turns 100] [--pause 0.5]
+                                           [--from-revision 0050] [--turns 100] [--pause 0.5] [--processes 1]
 
 The whole are ten million diagnoses and a hundred million measured values; --part 0.1 is a tenth of both. It
 fills a database in DIR with the tables of a revision, migrates it, and starts the service's site on it in a
 process of its own. Eight clients then ask at once, each again and again after a pause that is drawn for it
-(half to one and a half times --pause), since nobody waits for the others. The exit code is 1 where a goal is
-missed. The database stays in DIR, and the next run takes it as it is.
+(half to one and a half times --pause), since nobody waits for the others. The service answers with one
+process; --processes spreads the clients over more, to see what a second one would give. The exit code is 1
+where a goal is missed. The database stays in DIR, and the next run takes it as it is.
 """
 
 import argparse
@@ -16,7 +17,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from math import ceil
 from pathlib import Path
@@ -94,8 +95,10 @@ class Answered:
         return self.question.goal_s is None or self.percentile_s(0.95) <= self.question.goal_s
 
 
-def ask(site: Site, question: Question, *, turns: int, pause_s: float) -> Answered:
+def ask(sites: Sequence[Site], question: Question, *, turns: int, pause_s: float) -> Answered:
     """Have CLIENTS clients ask at once, each `turns` times and each time of another motor.
+
+    sites: processes on the same database, which the clients are spread over.
 
     With one pause for all they would come back in the order of their answers, each while the one before it
     is still answered.
@@ -104,7 +107,7 @@ def ask(site: Site, question: Question, *, turns: int, pause_s: float) -> Answer
     def one(client: int) -> list[float]:
         pauses_s = Random(client)  # noqa: S311 - the same pauses in each run
         times = []
-        with site.client() as http:
+        with sites[client % len(sites)].client() as http:
             for turn in range(turns + 1):
                 path = question.of((client + turn * CLIENTS) * 7 % MOTORS)
                 begun_s = time.perf_counter()
@@ -113,11 +116,11 @@ def ask(site: Site, question: Question, *, turns: int, pause_s: float) -> Answer
                 time.sleep(pause_s * pauses_s.uniform(0.5, 1.5))
         return times[1:]  # the first one connects
 
-    used_s = site.processor_s()
+    used_s = sum(site.processor_s() for site in sites)
     with ThreadPoolExecutor(CLIENTS) as pool:
         each = sorted(took for times in pool.map(one, range(CLIENTS)) for took in times)
     asked = CLIENTS * (turns + 1)
-    return Answered(question, each, (site.processor_s() - used_s) / asked)
+    return Answered(question, each, (sum(site.processor_s() for site in sites) - used_s) / asked)
 
 
 @contextmanager
@@ -195,9 +198,10 @@ def run(url: str, arguments: argparse.Namespace, directory: Path) -> int:
     _timed(f"migration from {arguments.from_revision}", lambda: migrate(url))
     engine = connect(url)
     found = []
-    with serving(directory, url) as site:
+    with ExitStack() as running:
+        sites = [running.enter_context(serving(directory, url)) for _ in range(arguments.processes)]
         for question in QUESTIONS:
-            found.append(ask(site, question, turns=arguments.turns, pause_s=arguments.pause))
+            found.append(ask(sites, question, turns=arguments.turns, pause_s=arguments.pause))
             progress(question.label)
     _print(found)
     print("\n".join(table(("table", "MB"), [(name, f"{size:,.0f}") for name, size in sizes(engine)])))
@@ -245,6 +249,7 @@ def main() -> int:
     parser.add_argument("--from-revision", default="head", help="tables that are filled, and then migrated")
     parser.add_argument("--turns", type=int, default=100, help="questions of each client")
     parser.add_argument("--pause", type=float, default=0.5, help="of a client, in the middle [s]")
+    parser.add_argument("--processes", type=int, default=1, help="of the site")
     arguments = parser.parse_args()
     with database(arguments.database, arguments.directory) as url:
         return run(url, arguments, arguments.directory)

@@ -6,6 +6,7 @@ import time
 from collections.abc import Mapping
 from functools import partial
 
+from pydantic_core import from_json
 from sqlalchemy import Connection, Engine, create_engine, event, func, select
 from sqlalchemy.engine.interfaces import DBAPIConnection
 from sqlalchemy.pool import ConnectionPoolEntry
@@ -50,6 +51,7 @@ def connect(
             engine = create_engine(
                 parsed.set(query=parameters(parsed.query, limits)),
                 json_serializer=serializer,
+                json_deserializer=_decoded,
                 pool_pre_ping=True,
             )
         except ModuleNotFoundError as error:
@@ -66,6 +68,7 @@ def connect(
     engine = create_engine(
         parsed,
         json_serializer=serializer,
+        json_deserializer=_decoded,
         connect_args={"timeout": busy_timeout_s},
         execution_options={WAITS_S: busy_timeout_s},
     )
@@ -79,6 +82,19 @@ def busy_timeout_s_of(options: Mapping[str, object]) -> float:
     timeout_s = options.get(WAITS_S, BUSY_TIMEOUT_S)
     assert isinstance(timeout_s, float)  # noqa: S101 - `connect` has set it
     return timeout_s
+
+
+def _decoded(text: str | bytes) -> object:
+    """Return what a JSON document says, in half the time of `json.loads`.
+
+    Half of a surrogate pair is no Unicode, which `from_json` insists on. Texts of relays may have brought one
+    into a database of an earlier version.
+    """
+    try:
+        found: object = from_json(text)
+    except ValueError:
+        return json.loads(text)
+    return found
 
 
 def one_at_a_time(connection: Connection, work: str) -> None:

@@ -58,5 +58,5 @@ def _level(point: ConditionPoint) -> PastValue:
 
 
 def _of_record(point: TrendPoint) -> PastValue:
-    is_good = point.value is not None and point.verdict is not Verdict.UNDIAGNOSABLE
+    is_good = point.value is not None and point.verdict != Verdict.UNDIAGNOSABLE
     return PastValue(point.recorded_ns, point.value, is_good)

@@ -3,7 +3,19 @@
 from collections.abc import Callable, Sequence
 from typing import Any, TypeVar
 
-from sqlalchemy import BindParameter, ColumnElement, Select, and_, bindparam, func, null, select, union_all
+from sqlalchemy import (
+    BindParameter,
+    ColumnElement,
+    Select,
+    String,
+    and_,
+    bindparam,
+    func,
+    null,
+    select,
+    type_coerce,
+    union_all,
+)
 from sqlalchemy.orm import Session, aliased
 
 from core.operation import Operation
@@ -49,6 +61,7 @@ _FIGURES = {
     "load_level": (*_LOAD, *(null(),) * 3),
 }
 """A figure, its interval, its scatter and its detection limit; null where there is none."""
+_VERDICT_TEXT = type_coerce(DiagnosisRow.verdict, String)
 _SAID = (
     DiagnosisRow.motor,
     DiagnosisRow.recording_id,
@@ -101,12 +114,7 @@ class MotorHealthRows(Sessions):
         descending: newest first instead.
         Recordings of a motor that stands, starts, stops or trips are not among them.
         """
-        columns = (
-            DiagnosisRow.recorded_ns,
-            *_FIGURES[quantity],
-            DiagnosisRow.verdict,
-            DiagnosisRow.recording_id,
-        )
+        columns = (DiagnosisRow.recorded_ns, *_FIGURES[quantity], _VERDICT_TEXT, DiagnosisRow.recording_id)
         return self._points(
             motor,
             columns,
@@ -159,8 +167,10 @@ class MotorHealthRows(Sessions):
         query = query.where(*within(DiagnosisRow.recorded_ns, from_ns, to_ns))
         order: Order = [DiagnosisRow.recorded_ns, DiagnosisRow.id]
         with self._read() as session:
-            found(session, MotorRow, motor, "motor")
-            return page_of(session, query, order, to_point, limit=limit, after=after, descending=descending)
+            points = page_of(session, query, order, to_point, limit=limit, after=after, descending=descending)
+            if not points.items:  # a motor that has any is known
+                found(session, MotorRow, motor, "motor")
+            return points
 
 
 def _health_of(session: Session, motors: Sequence[MotorEntry]) -> tuple[MotorHealth, ...]:

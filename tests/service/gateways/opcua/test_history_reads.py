@@ -130,11 +130,13 @@ def told(settings: Settings, path: str) -> list[tuple[float | None, int, datetim
 def test_loads_are_those_of_their_records_with_times(
     repository: Repository, tmp_path: Path, settings: Settings
 ) -> None:
-    keep(repository, tmp_path, [fault(0.01), undiagnosable(), fault(0.02)])
+    doubtful = replace(undiagnosable(), mu_f=0.03)
+    keep(repository, tmp_path, [fault(0.01), undiagnosable(), doubtful, fault(0.02)])
 
-    times = [FIRST, FIRST + SECOND, FIRST + 2 * SECOND]
+    times = [FIRST + second * SECOND for second in range(4)]
     good, none = ua.StatusCodes.Good, ua.StatusCodes.BadNoData
-    assert told(settings, LOAD) == list(zip([0.01, None, 0.02], [good, none, good], times, strict=True))
+    found = told(settings, LOAD)
+    assert found == list(zip([0.01, None, 0.03, 0.02], [good, none, none, good], times, strict=True))
 
 
 def test_levels_are_those_of_the_condition_as_the_variable_told_them(
