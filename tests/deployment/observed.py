@@ -52,11 +52,16 @@ class Enterprise:
         self.wait("the service is ready and every relay answers", all_up, START_LIMIT_S)
 
     def recordings(self, motor: str | None = None) -> Recordings:
+        """Those of a motor, or of all, once each that was fetched is read, which tells its time."""
         query = {} if motor is None else {"motor": motor}
-        return {
-            str(row["id"]): (str(row["motor"]), str(row["recorded_time"]))
-            for row in self.service.items("/recordings", **query)
-        }
+        rows: list[Mapping[str, object]] = []
+
+        def are_read() -> bool:
+            rows[:] = self.service.items("/recordings", **query)
+            return all(row["state"] != "fetched" for row in rows)
+
+        self.wait("every record that was fetched is read", are_read, DIAGNOSIS_LIMIT_S)
+        return {str(row["id"]): (str(row["motor"]), str(row["recorded_time"])) for row in rows}
 
     def trend(self, motor: str) -> list[str]:
         """Times of its points, as told: oldest first."""
