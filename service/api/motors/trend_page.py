@@ -1,6 +1,6 @@
 """A page of a trend, written without a model for each of its thousand points."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from functools import partial
 from typing import Literal
 
@@ -9,7 +9,7 @@ from pydantic_core import to_json
 
 from service.api.pages import encode
 from service.api.times import rfc3339_of_all
-from service.storage.records import ConditionPoint, Cursor, Page, TrendPoint, interval_of
+from service.storage.records import ConditionPoint, Cursor, Page, TrendPoint
 
 ConditionQuantity = Literal["condition_level", "change"]
 
@@ -17,45 +17,35 @@ ConditionQuantity = Literal["condition_level", "change"]
 def trend_of_recordings(stored: Page[TrendPoint]) -> Response:
     """Return a page of a figure of each recording."""
     times = rfc3339_of_all([point.recorded_ns for point in stored.items])
-    points = [
-        {
-            "time": time,
-            "value": value,
-            "ci95": interval_of(ci95_low, ci95_high),
-            "scatter95": interval_of(scatter95_low, scatter95_high),
-            "detection_limit": limit,
-            "verdict": verdict,
-            "recording_id": recording_id,
-        }
-        for time, (
-            _,
-            value,
-            ci95_low,
-            ci95_high,
-            scatter95_low,
-            scatter95_high,
-            limit,
-            verdict,
-            recording_id,
-        ) in zip(times, stored.items, strict=True)
-    ]
-    return _document(points, stored.next)
+    return _document(map(_of_recording, stored.items, times), stored.next)
 
 
 def trend_of_conditions(stored: Page[ConditionPoint], quantity: ConditionQuantity) -> Response:
     """Return a page of a figure of the motor's condition, from each recording on."""
     to_point = partial(_of_condition, quantity=quantity)
     times = rfc3339_of_all([point.time_ns for point in stored.items])
-    return _document(list(map(to_point, stored.items, times)), stored.next)
+    return _document(map(to_point, stored.items, times), stored.next)
 
 
-def _document(points: Sequence[Mapping[str, object]], after: Cursor | None) -> Response:
+def _document(points: Iterable[Mapping[str, object]], after: Cursor | None) -> Response:
     """Return the document of `Page[TrendPoint]`: models would take longer than the query and the text."""
     document = {
-        "items": points,
+        "items": list(points),
         "next_cursor": None if after is None else encode(after),
     }
     return Response(to_json(document, inf_nan_mode="null"), media_type="application/json")
+
+
+def _of_recording(point: TrendPoint, time: str) -> Mapping[str, object]:
+    return {
+        "time": time,
+        "value": point.value,
+        "ci95": point.ci95,
+        "scatter95": point.scatter95,
+        "detection_limit": point.detection_limit,
+        "verdict": point.verdict,
+        "recording_id": point.recording_id,
+    }
 
 
 def _of_condition(point: ConditionPoint, time: str, quantity: ConditionQuantity) -> Mapping[str, object]:

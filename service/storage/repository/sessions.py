@@ -3,8 +3,6 @@
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import fields
-from itertools import starmap
-from operator import itemgetter
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from sqlalchemy import ColumnElement, Engine, Row, Select, func, select, text, tuple_
@@ -142,9 +140,8 @@ def page_of(
     rows = rows_of(session, query.add_columns(*order).limit(limit + 1))
     last = rows[limit - 1] if len(rows) > limit else None
     width = len(order)
-    selected = map(itemgetter(slice(-width)), rows[:limit])
     return Page(
-        items=tuple(starmap(to_item, selected)),
+        items=tuple(to_item(*row[:-width]) for row in rows[:limit]),
         next=None if last is None else tuple(last[-width:]),
     )
 
