@@ -5,10 +5,10 @@ ENV PIP_NO_CACHE_DIR=1 PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_ROOT_USER_ACTION=igno
 RUN python -m venv /opt/statorwatch
 WORKDIR /src
 # The libraries come first: they change seldom, and this layer is then kept.
-COPY pyproject.toml constraints.txt ./
+COPY requirements.txt ./
 # PostgreSQL's driver and the client of S3-compatible stores are among them, since an image cannot be added to.
-RUN python -c "import tomllib; p = tomllib.load(open('pyproject.toml', 'rb'))['project']; print(*p['dependencies'], *p['optional-dependencies']['postgres'], *p['optional-dependencies']['s3'], sep='\n')" > requirements.txt \
- && /opt/statorwatch/bin/pip install --constraint constraints.txt --requirement requirements.txt \
+# A file whose hash is not in requirements.txt is not installed.
+RUN /opt/statorwatch/bin/pip install --require-hashes --requirement requirements.txt \
  # The client describes all of a cloud's services; stores of recordings are S3, and these say who asks.
  && find /opt/statorwatch/lib/python3*/site-packages/botocore/data -mindepth 1 -maxdepth 1 -type d \
     ! -name s3 ! -name sts ! -name sso ! -name sso-oidc ! -name signin -exec rm -rf {} +
@@ -25,7 +25,7 @@ RUN echo "setuptools==84.2.1" > build-constraints.txt \
 FROM docker.io/library/python:3.11-slim-bookworm
 LABEL org.opencontainers.image.title="StatorWatch" org.opencontainers.image.licenses="GPL-3.0-or-later"
 RUN useradd --uid 10001 --no-create-home --home-dir /tmp --shell /usr/sbin/nologin statorwatch \
- && install --directory --owner statorwatch --group statorwatch --mode 0750 /data /token /recordings
+ && install --directory --owner statorwatch --group statorwatch --mode 0700 /data /token /recordings
 COPY --from=build /opt/statorwatch /opt/statorwatch
 ENV PATH=/opt/statorwatch/bin:$PATH PYTHONUNBUFFERED=1 PYTHONDONTWRITEBYTECODE=1 OPENBLAS_NUM_THREADS=1
 # The machine models, compiled. Numba compares a source's time to the nanosecond, layers keep whole seconds.

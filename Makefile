@@ -18,7 +18,7 @@ MADE_PAGES := $(foreach page,architecture command alarm audit role,tests/docs/te
 # docker compose where its engine answers, else nothing; COMPOSE="podman-compose" make compose-test: another one
 COMPOSE ?= $(shell docker compose version >/dev/null 2>&1 && docker info >/dev/null 2>&1 && echo docker compose)
 
-.PHONY: install demo test campaigns test-all containers coverage hostile chaos compose-test compose-test-hosts lint docs client bench corpus interop fuzz lock clean
+.PHONY: install demo test campaigns test-all containers coverage hostile chaos compose-test compose-test-hosts lint docs client bench corpus interop fuzz lock advisories audit clean
 .DEFAULT_GOAL := install
 
 install: $(WARM)
@@ -32,7 +32,7 @@ $(STAMP): $(BIN)/python pyproject.toml constraints.txt
 	touch $@
 
 # Cached machine code is checked against a function's own file only, not against those it calls: compile afresh.
-$(WARM): $(STAMP) $(wildcard core/machines/*.py core/condition/*/*.py ied_sim/motor/*.py)
+$(WARM): $(STAMP) $(wildcard core/machines/*.py core/diagnosis/*.py core/condition/*/*.py ied_sim/motor/*.py)
 	@echo "compiling the machine models: half a minute"
 	find core ied_sim -name '*.nb[ci]' -delete
 	$(BIN)/python -c 'import core.warm_up, ied_sim; core.warm_up.warm_up(); ied_sim.warm_up()'
@@ -124,6 +124,16 @@ fuzz: install
 
 lock: install
 	$(BIN)/python -m pip freeze --exclude-editable --exclude pip --exclude setuptools > constraints.txt
+	$(BIN)/uv pip compile pyproject.toml --extra postgres --extra s3 --constraint constraints.txt --python-version 3.11 \
+		--generate-hashes --no-header --no-annotate --quiet --output-file requirements.txt
+
+# Known advisories about the pinned packages, into a file. Needs a network; to be made for each release.
+advisories: install
+	$(BIN)/python -m release advisories
+
+# The pinned packages against that file. Needs none.
+audit: install
+	$(BIN)/python -m release audit
 
 clean:
 	rm -rf .venv build dist *.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis

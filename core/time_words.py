@@ -1,6 +1,7 @@
 """Times, and how long something lasts, as people read them."""
 
-from datetime import datetime
+import re
+from datetime import UTC, datetime
 from typing import Final
 from zoneinfo import ZoneInfo
 
@@ -15,26 +16,59 @@ UNITS: Final = (
 MANY: Final = 2.0
 """A duration is told in the largest unit that it has at least so often."""
 
+_RFC3339_IN_SENTENCE: Final = re.compile(r"\b\d{4}-\d\d-\d\dT\d\d:\d\d(?P<seconds>:\d\d)?Z")
+
 HOURS_PER_DAY: Final = SECONDS_PER_DAY / SECONDS_PER_HOUR
 
 
-def clock(time_ns: int, zone: str = "UTC") -> str:
-    """Return a time to the minute as the clocks of a zone show it, with the zone's short name.
+def clock(time_ns: int, zone: str | None = "UTC", *, seconds: bool = False) -> str:
+    """Return a time as the clocks of a zone show it, with how far they are ahead of UTC.
 
     Parameters
     ----------
     time_ns : int
         Time, UTC [ns].
-    zone : str
-        Name of the time zone, such as Europe/Berlin.
+    zone : str or None
+        Name of the time zone, such as Europe/Berlin. None: that of this machine.
+    seconds : bool
+        To the second; otherwise to the minute.
 
     Returns
     -------
     str
-        The time, such as 2026-01-31 13:00 CET.
+        The time, such as 2026-01-31 13:00 +01:00, or 2026-01-31 12:00 UTC.
     """
     at = _local(time_ns, zone)
-    return f"{at:%Y-%m-%d %H:%M} {at.tzname()}"
+    return f"{at:%Y-%m-%d %H:%M:%S} {_offset(at)}" if seconds else f"{at:%Y-%m-%d %H:%M} {_offset(at)}"
+
+
+def with_clock_times(sentence: str, zone: str | None = "UTC") -> str:
+    """Return a sentence with its RFC 3339 times as `clock` writes them, each as precise as it was.
+
+    Times with a fraction of a second stay: whoever gives them compares clocks.
+
+    Parameters
+    ----------
+    sentence : str
+        The sentence, with times such as 2026-01-31T12:00:00Z.
+    zone : str or None
+        Name of the time zone. None: that of this machine.
+
+    Returns
+    -------
+    str
+        The sentence, with times such as 2026-01-31 13:00:00 +01:00.
+    """
+
+    def written(found: re.Match[str]) -> str:
+        try:
+            at = datetime.fromisoformat(found[0])
+        except ValueError:  # it looks like a time, and is none
+            return found[0]
+        time_ns = int(at.timestamp()) * NANOSECONDS_PER_SECOND
+        return clock(time_ns, zone, seconds=found["seconds"] is not None)
+
+    return _RFC3339_IN_SENTENCE.sub(written, sentence)
 
 
 def day(time_ns: int, zone: str = "UTC") -> str:
@@ -93,5 +127,13 @@ def time_ahead(days: float) -> str:
     return f"{days * HOURS_PER_DAY:.0f} hours" if days < MANY else f"{days:.0f} days"
 
 
-def _local(time_ns: int, zone: str) -> datetime:
-    return datetime.fromtimestamp(time_ns // NANOSECONDS_PER_SECOND, ZoneInfo(zone))
+def _local(time_ns: int, zone: str | None) -> datetime:
+    seconds = time_ns // NANOSECONDS_PER_SECOND
+    if zone is None:
+        return datetime.fromtimestamp(seconds, UTC).astimezone()
+    return datetime.fromtimestamp(seconds, ZoneInfo(zone))
+
+
+def _offset(at: datetime) -> str:
+    ahead = f"{at:%z}"
+    return f"{ahead[:3]}:{ahead[3:5]}" if at.utcoffset() else "UTC"

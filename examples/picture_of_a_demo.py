@@ -39,10 +39,10 @@ def main() -> None:
         loads.plot(100 * motor["truth"]["load_level"], row, "|", color="black", markersize=18)
         phase = diagnosis["phase"]
         text = diagnosis["verdict"] + (f", phase {phase}" if phase else "")
-        levels.annotate(text, (12.2, row), va="center", color=colour, annotation_clip=False)
+        levels.annotate(text, (1.02, row), xycoords=levels.get_yaxis_transform(), va="center", color=colour)
     levels.set_ylim(-0.6, len(motors) - 0.4)
     levels.axvline(0.5, color="#8d99ae", linestyle="--", linewidth=1)
-    levels.set(xlim=(-0.5, 12), xlabel="shorted turns, % of the phase (bar: truth; dashed: limit)")
+    levels.set(xlim=(-0.5, None), xlabel="shorted turns, % of the phase (bar: truth; dashed: limit)")
     levels.set_yticks(range(len(motors)), [f"{m['motor']}\n{m['site']}" for m in reversed(motors)])
     loads.set(xlim=(0, 100), xlabel="load, % of rated torque (bar: truth)")
     figure.savefig(sys.argv[2], dpi=110)

@@ -59,7 +59,7 @@ def simulated(motor: Motor) -> dict[str, MotorPlant]:
 
 def look_at(recording: Recording, motor: Motor) -> None:
     """Print the answer, the likelihoods, and what would tell where it is open."""
-    answer = classify_record(examine(recording, motor), motor)
+    answer = classify_record(examine(recording, motor))
     print(f"{answer.words} ({answer.answer.probability:.0%})")
     for one in answer.likelihoods[:3]:
         print(f"  {one.cause} {one.probability:.1%}: {one.figure}")

@@ -5,6 +5,7 @@ Server      one simulated IED made from a model text
 ServerPump  one thread that drives many servers
 """
 
+from mms.binding.library import mbed_tls_version
 from mms.binding.stderr_filter import filter_tls_log_from_stderr
 from mms.client.client import Client
 from mms.client.data_values import DataSetMember
@@ -104,6 +105,7 @@ __all__ = [
     "ValueRefused",
     "filter_tls_log_from_stderr",
     "is_password",
+    "mbed_tls_version",
     "read_certificates",
     "read_secret",
 ]

@@ -50,6 +50,8 @@ class Document:
             raise self.error(self.root, f"a root element SCL of {NAMESPACE}", str(self.root.tag))
         if name.namespace != NAMESPACE:
             self.note(self.root, f"{name.namespace or 'no'} namespace: read as {NAMESPACE}")
+        for remark in parsed.remarks:
+            self.note(self.root, remark)
         if parsed.first_undeclared_prefix is not None:
             self.note(self.root, f"{parsed.first_undeclared_prefix}: such names are passed over")
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from lxml import etree
 
+from scl.address_parameters import parameter_type
 from scl.configuration import Address
 from scl.document import IED_NAME, Document
 from scl.errors import SclError
@@ -166,12 +167,13 @@ def number_goose(document: Document, number: int) -> None:
         for section in document.children(block, "Address"):
             for parameter in document.children(section, "P"):
                 text = content(parameter)
-                if parameter.get("type") == "MAC-Address":
+                kind = parameter_type(parameter.get("type", ""))
+                if kind == "MAC-Address":
                     octets = mac_octets(text)
                     if octets is None:
                         raise document.error(parameter, "an Ethernet address", repr(text))
                     parameter.text = (int.from_bytes(octets) + number).to_bytes(6).hex("-").upper()
-                elif parameter.get("type") == "APPID":
+                elif kind == "APPID":
                     parameter.text = f"{int(text, 16) + number:04X}"
 
 
@@ -193,7 +195,8 @@ def _set_parameter(document: Document, connected: etree._Element, kind: str, val
     if section is None:
         section = document.add(connected, "Address")
         connected.insert(0, section)
-    parameter = next((each for each in document.children(section, "P") if each.get("type") == kind), None)
+    same = (each for each in document.children(section, "P") if parameter_type(each.get("type", "")) == kind)
+    parameter = next(same, None)
     if parameter is None:
         parameter = document.add(section, "P", type=kind)
     parameter.text = value

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 
 from lxml import etree
 
+from scl.address_parameters import address_parameters
 from scl.attribute_values import decimal
 from scl.control_block_model import MulticastAddress
 from scl.document import Document
@@ -42,10 +43,7 @@ def multicast_addresses(document: Document) -> MulticastAddresses:
 
 
 def _address(document: Document, element: etree._Element) -> MulticastAddress | None:
-    parameters = {
-        parameter.get("type", ""): content(parameter)
-        for parameter in document.children(document.child(element, "Address"), "P")
-    }
+    parameters = address_parameters(document, element)
     mac = parameters.get("MAC-Address", "")
     application_id = _hexadecimal(parameters.get("APPID", "0"))
     vlan_id = _hexadecimal(parameters.get("VLAN-ID", "0"))

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from lxml import etree
 
+from scl.address_parameters import address_parameters, note_unusable
 from scl.configuration import ConnectedAccessPoint, Header, Scl, SubNetwork
 from scl.conformance import check_conformance
 from scl.document import Document
@@ -20,7 +21,7 @@ from scl.instance_values import InstanceValues
 from scl.multicast_addresses import multicast_addresses
 from scl.substation_model import Bay, Equipment, Substation
 from scl.templates import Templates
-from scl.xml_file import LARGEST_FILE_BYTES, content
+from scl.xml_file import LARGEST_FILE_BYTES
 
 
 def read(path: Path | str, *, largest_bytes: int = LARGEST_FILE_BYTES) -> Scl:
@@ -114,21 +115,15 @@ def _connected_access_point(
     ied = element.get("iedName", "")
     if ied not in ieds:
         document.note(element, "names an IED this file does not hold")
+    parameters = address_parameters(document, element)
+    note_unusable(document, element, parameters)
     return ConnectedAccessPoint(
         ied=ied,
         access_point=element.get("apName", ""),
         subnetwork=network.get("name", ""),
-        parameters=_address_parameters(document, element),
+        parameters=parameters,
         line=element.sourceline or 0,
     )
-
-
-def _address_parameters(document: Document, element: etree._Element) -> dict[str, str]:
-    """Return the P elements of an Address by type, with or without xsi:type; the first of a type counts."""
-    parameters: dict[str, str] = {}
-    for parameter in document.children(document.child(element, "Address"), "P"):
-        parameters.setdefault(parameter.get("type", ""), content(parameter))
-    return parameters
 
 
 def _substations(document: Document, ieds: dict[str, Ied]) -> tuple[Substation, ...]:

@@ -4,6 +4,8 @@ The file may be hostile, so the parser allows no document type, no entities and 
 and depth.
 """
 
+import codecs
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,10 +14,23 @@ from lxml import etree
 from scl.errors import SclError
 
 LARGEST_FILE_BYTES = 256 * 1024 * 1024
+MOST_ATTRIBUTES = 200
+"""Of one element. The schema has at most a dozen; some tools add their own in other namespaces."""
+_ELEMENT_WITH_MORE = etree.XPath(f"(//*[@*[{MOST_ATTRIBUTES + 1}]])[1]")
 UNDECLARED_PREFIX = etree.ErrorTypes.NS_ERR_UNDEFINED_NAMESPACE
 """Tools write xsi:type and forget to declare xsi. The XML itself is well-formed."""
 EXCERPT = 60
 """Characters of what a message quotes."""
+_WIDE = {
+    codecs.BOM_UTF16_LE: "utf-16",
+    codecs.BOM_UTF16_BE: "utf-16",
+    b"<\0": "utf-16-le",
+    b"\0<": "utf-16-be",
+}
+"""Encodings of two bytes a letter, by how a file begins."""
+_ENCODING = re.compile(r"^(\s*<\?xml[^>]*?)\s+encoding\s*=\s*(?:\"[^\"]*\"|'[^']*')")
+_LATE_DECLARATION = re.compile(rb"(?:\xef\xbb\xbf)?(\s+)(<\?xml\s[^>]*\?>)")
+
 IDENTITY = ("name", "id", "inst", "iedName", "apName", "prefix", "lnClass", "lnType", "type", "doName")
 
 
@@ -30,10 +45,13 @@ class ParsedFile:
     first_undeclared_prefix : str or None
         What the parser says of the first name whose namespace prefix the file does not declare; None if
         it declares all. Such names keep their prefix: they are no names of SCL.
+    remarks : tuple of str, optional
+        What had to be put right before the file was XML.
     """
 
     tree: etree._ElementTree
     first_undeclared_prefix: str | None
+    remarks: tuple[str, ...] = ()
 
 
 def parse(path: Path, *, largest_bytes: int = LARGEST_FILE_BYTES) -> ParsedFile:
@@ -65,6 +83,7 @@ def parse(path: Path, *, largest_bytes: int = LARGEST_FILE_BYTES) -> ParsedFile:
         raise SclError(path, expected="a file name", found=str(error)) from error
     if len(data) > largest_bytes:
         raise SclError(path, expected=f"at most {largest_bytes} bytes", found="a larger file")
+    data, remarks = _put_right(path, data)
     parser = _parser()
     undeclared = None
     try:
@@ -80,7 +99,39 @@ def parse(path: Path, *, largest_bytes: int = LARGEST_FILE_BYTES) -> ParsedFile:
         raise SclError(
             path, expected="no document type declaration (it can define entities)", found=tree.docinfo.doctype
         )
-    return ParsedFile(tree, undeclared)
+    _require_few_attributes(path, root)
+    return ParsedFile(tree, undeclared, remarks)
+
+
+def _put_right(path: Path, data: bytes) -> tuple[bytes, tuple[str, ...]]:
+    """Return the text in UTF-8 where it was in UTF-16, and its declaration at its beginning, with remarks."""
+    remarks = []
+    encoding = next((one for begin, one in _WIDE.items() if data.startswith(begin)), None)
+    if encoding is not None:
+        try:
+            text = data.decode(encoding)
+        except UnicodeDecodeError as error:
+            raise SclError(path, expected="a text in UTF-16", found=str(error)) from error
+        data = _ENCODING.sub(r"\1", text.removeprefix("\ufeff"), count=1).encode("utf-8")
+        remarks.append("the text is UTF-16: read as such")
+    if late := _LATE_DECLARATION.match(data):
+        data = late[2] + late[1] + data[late.end() :]  # lines keep their numbers
+        remarks.append("blanks before the XML declaration are passed over")
+    return data, tuple(remarks)
+
+
+def _require_few_attributes(path: Path, root: etree._Element) -> None:
+    """Raise SclError where an element has more than it may: each look at one goes through all of them."""
+    found = _ELEMENT_WITH_MORE(root)
+    if isinstance(found, list) and found:
+        element = found[0]
+        raise SclError(
+            path,
+            line=element.sourceline,
+            element=f"<{etree.QName(element).localname}>",
+            expected=f"at most {MOST_ATTRIBUTES} attributes of an element",
+            found=f"{len(element.attrib)}",
+        )
 
 
 def _parser(*, recover: bool = False) -> etree.XMLParser:

@@ -36,7 +36,7 @@ LOADS = ((0.05, 0.2), (0.2, 0.5), (0.5, 1.0))
 LEAST_TURNS, MOST_TURNS = 0.06, 0.12
 UNBALANCES = (0.0, 0.03)
 NOISE = 0.002
-SHORTEST_DETECTED = 0.024
+SHORTEST_DETECTED = 0.05
 """Equivalent level above which every record is to be called a fault."""
 MOTORS = (ALL, (VERY_LARGE,))
 """Motors of a table. The greater X_ls/R_s, the less a path changes the current of the turns."""
@@ -161,7 +161,7 @@ def judge_path(draw: PathDraw) -> PathOutcome:
 
 
 HEADER = (
-    "path", "load", "phase right", "level right", "load right", "`fault` above 2.4 %", "all right",
+    "path", "load", "phase right", "level right", "load right", "`fault` above 5 %", "all right",
     "level off: median, most", "level off by more than 10 %", "interval: half width",
 )  # fmt: skip
 
@@ -253,6 +253,6 @@ def _estimated(motor: Motor, condition: Condition, voltage: Phasors) -> Phasors:
         np.array([condition.winding]),
         condition.load_level * one,
         0.0 * one,
-        condition.path_ratio * one,
+        leakage=one / (1.0 + condition.path_ratio),
     )
     return np.asarray(to_axes.T @ running.state(candidate).current[:, 0] / np.sqrt(2.0))

@@ -7,9 +7,9 @@ from time import perf_counter
 import numpy as np
 
 from benchmarks.classification.outcomes import Outcome, outcome_of
-from core.classification.causes import PRIORS, Cause, Causes
 from core.classification.record import classify_record
 from core.condition.measuring.observing import examine
+from core.diagnosis.causes import PRIORS, Cause, Causes
 from testing.machines.cause_records import CauseCase, Sizes
 from testing.machines.motors import LARGE, MEDIUM, REFERENCE
 
@@ -49,7 +49,7 @@ def answered(subject: Subject) -> Result:
     known, record = case.known(), case.record()
     examined = examine(record, known)
     begun = perf_counter()
-    answer = classify_record(examined, known)
+    answer = classify_record(examined)
     seconds = perf_counter() - begun
     outcome = outcome_of(answer, subject.causes)
     return Result(subject, outcome, answer.answer.causes, answer.is_told, seconds)

@@ -10,7 +10,7 @@ from benchmarks.classification.cases import MOTORS, ONE_RECORD, PAIRS, Result, S
 from benchmarks.classification.outcomes import Outcome
 from benchmarks.classification.picture import Answer, draw_matrix, in_words
 from benchmarks.reporting import Section, rate_text, spread, table
-from core.classification.causes import IN_WORDS, NOTHING, Cause, Causes
+from core.diagnosis.causes import IN_WORDS, NOTHING, Cause, Causes
 
 PICTURE = Path("docs/evidence/images/classification/confusion.svg")
 LOADS, PAIR_LOADS = (0.25, 0.5, 0.75, 1.0), (0.5, 0.9)

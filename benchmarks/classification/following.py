@@ -51,7 +51,7 @@ class FollowedMotor:
     def take_record(self, recording: Recording) -> None:
         """Take in a record of the running motor."""
         examined = examine(recording, self._motor)
-        self._answers.append(RecordAnswer.from_dict(classify_record(examined, self._motor).as_dict()))
+        self._answers.append(RecordAnswer.from_dict(classify_record(examined).as_dict()))
         self._take_cage(examined.rotor)
         if examined.observation is None:
             return

@@ -7,7 +7,7 @@ from math import pi
 import numpy as np
 
 from benchmarks.classification.cases import MOTORS, drawn_sizes
-from core.classification.causes import NOTHING, Cause, Causes
+from core.diagnosis.causes import NOTHING, Cause, Causes
 from core.machines.parameters import Motor
 from core.recordings import Recording
 from core.units import NANOSECONDS_PER_SECOND

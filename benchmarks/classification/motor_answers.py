@@ -15,7 +15,7 @@ from benchmarks.classification.lives import PAST, PRESENT, STARTS_OF_PAST, START
 from benchmarks.classification.outcomes import Outcome, outcome_of
 from benchmarks.classification.picture import Answer, draw_matrix, in_words
 from benchmarks.reporting import Section, rate_text, spread, table
-from core.classification.causes import NOTHING, PRIORS, Causes
+from core.diagnosis.causes import NOTHING, PRIORS, Causes
 from core.recordings import Recording
 
 PICTURE = Path("docs/evidence/images/classification/motors.svg")

@@ -2,8 +2,8 @@
 
 from enum import StrEnum
 
-from core.classification.causes import Causes
 from core.classification.classification import Classification
+from core.diagnosis.causes import Causes
 
 
 class Outcome(StrEnum):

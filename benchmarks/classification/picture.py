@@ -8,7 +8,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from core.classification.causes import IN_WORDS, Cause, Causes
+from core.diagnosis.causes import IN_WORDS, Cause, Causes
 
 OPEN, TWO = "not told apart", "two causes"
 mpl.use("Agg")

@@ -13,9 +13,9 @@ import numpy as np
 from benchmarks.classification.cases import MOTORS, ONE_RECORD
 from benchmarks.classification.picture import in_words
 from benchmarks.reporting import Section, mark, table
-from core.classification.causes import NOTHING, Causes
 from core.classification.record import classify_record
 from core.condition.measuring.observing import examine
+from core.diagnosis.causes import NOTHING, Causes
 from core.machines.parameters import Motor
 from core.recordings import Recording, comtrade, read
 from testing.machines.cause_records import CauseCase
@@ -85,7 +85,7 @@ def _times(path: Path, motor: Motor, repeats: int) -> list[tuple[float, float, f
         after_reading = perf_counter()
         examined = examine(recording, motor)
         after_examining = perf_counter()
-        classify_record(examined, motor)
+        classify_record(examined)
         ended = perf_counter()
         times_s.append((after_reading - begun, after_examining - after_reading, ended - after_examining))
     return times_s[1:]

@@ -15,7 +15,7 @@ from benchmarks.condition.records import REAL_NOISE, measure
 from benchmarks.reporting import spread, table
 from core.condition.following.follower import Follower
 from core.condition.observation import Observation
-from core.condition.verdict.condition import condition_of
+from core.condition.verdict.judging import condition_of
 
 PLANT_MOTORS, PLANT_RECORDS = 500, 87_660
 MOST_MICROSECONDS, MOST_KILOBYTES = 100.0, 50.0

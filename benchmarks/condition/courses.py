@@ -17,7 +17,9 @@ class Course:
     line_resistance_ohm: of joints in the lines of the machine's frame, (n, 3).  level: equivalent level of
     shorted turns.  path_ratio: resistance of their path over theirs.  winding: in the machine's frame.
     unbalance: what comes to V2/V1.  recorder: number of the relay, as its records tell.
-    rewound: from which record on the windings are others.
+    rewound: from which record on the windings are others.  beside: admittance of what hangs between the lines
+    behind the relay's transformers, beside the motor, (n, 3, 3) [S].  second: another motor there, and the
+    record from which it runs.
     """
 
     voltage_ratio: Complex
@@ -29,6 +31,8 @@ class Course:
     unbalance: Complex
     recorder: NDArray[np.int64]
     rewound: tuple[int, Windings] | None = None
+    beside: Complex | None = None
+    second: tuple[int, SimulatedMotor] | None = None
 
     def __len__(self) -> int:
         return self.level.size

@@ -10,7 +10,8 @@ from core.condition.bus.neighbours import StandingEstimate, neighbour_of
 from core.condition.following.follower import Follower
 from core.condition.kinds import Kind, State
 from core.condition.observation import Observation
-from core.condition.verdict.condition import Condition, condition_of
+from core.condition.verdict.condition import Condition
+from core.condition.verdict.judging import condition_of
 from core.machines.parameters import Motor
 
 CLOSELY = 30

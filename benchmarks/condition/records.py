@@ -100,9 +100,30 @@ def true_phasors(simulated: SimulatedMotor, operation: Operation, course: Course
         shorted=shorted,
         line_resistance_ohm=course.line_resistance_ohm if course.line_resistance_ohm.any() else None,
     )
+    current = found.line_current_A
+    if course.beside is not None:
+        current = current + np.einsum("nij,nj->ni", course.beside, voltage)
+    if course.second is not None:
+        current = current + _of_second(course.second, voltage, operation)
     terminals = TERMINALS[simulated.sequence]
     zero = (rated_V * operation.relative_voltage * operation.displacement)[:, np.newaxis]
-    return voltage[:, terminals] + zero, found.line_current_A[:, terminals]
+    return voltage[:, terminals] + zero, current[:, terminals]
+
+
+def _of_second(second: tuple[int, SimulatedMotor], voltage: Complex, operation: Operation) -> Complex:
+    """Line currents of another motor on the same terminals, with the load and the warmth of the first."""
+    first, other = second
+    plate = other.motor.nameplate
+    found = running(
+        other.windings.warmed(operation.warming),
+        voltage,
+        plate.rated_angular_frequency * operation.frequency_ratio,
+        plate.rated_torque_Nm * operation.load,
+        pole_pairs=plate.pole_pairs,
+        delta=other.delta,
+    )
+    runs = np.arange(len(operation)) >= first
+    return found.line_current_A * runs[:, np.newaxis]
 
 
 def measure(

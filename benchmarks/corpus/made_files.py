@@ -101,6 +101,7 @@ def _all() -> Iterator[tuple[str, Files]]:
     text = _pair(record, 1999, "ASCII")
     doubled = text[".DAT"].replace(b"\r\n", b"\r\n\r\n")
     yield "beside the standard/blank lines", {**text, ".DAT": doubled}
+    yield from _saved(record, text, report)
     for name, edit in OF_2013.items():
         yield f"beside the standard/{name}", _edited(record, edit, 2013)
     for name, (stamps, decimals) in STAMPS.items():
@@ -108,6 +109,42 @@ def _all() -> Iterator[tuple[str, Files]]:
     for name, edit in CONTRADICTIONS.items():
         yield f"contradictions/{name}", _edited(record, edit)
     yield from _damaged(record, report)
+
+
+def _saved(record: Recording, text: Files, report: bytes) -> Iterator[tuple[str, Files]]:
+    """Files that editors, shells and terminals saved in their own forms."""
+    pair, folder = _pair(record), "beside the standard"
+    yield f"{folder}/line end behind binary data", {**pair, ".DAT": pair[".DAT"] + b"\r\n"}
+    commas = text[".DAT"].replace(b"\r\n", b",\r\n")
+    yield f"{folder}/ASCII lines that end in a comma", {**text, ".DAT": commas}
+    wide = {suffix: content.decode().encode("utf-16") for suffix, content in text.items()}
+    yield f"{folder}/UTF-16", wide
+    yield (
+        f"{folder}/UTF-16 of the configuration alone",
+        {**pair, ".CFG": pair[".CFG"].decode().encode("utf-16")},
+    )
+    combined = combined_bytes(record, data_format="BINARY")
+    yield f"{folder}/combined file with a byte order mark", {".cff": b"\xef\xbb\xbf" + combined}
+    yield f"{folder}/event report in UTF-16", {".CEV": report.decode("latin-1").encode("utf-16")}
+    yield f"{folder}/two event reports", {".CEV": report + report}
+    yield f"{folder}/words behind an event report", {".CEV": report + b"\r\n=>>\r\nMOTOR 1\r\n"}
+    stamps = np.arange(SAMPLES) * 250 + 1_000_000
+    stamps[400:] -= 100_000
+    stamps[600:] += 17_000_000
+    content = bytearray(pair[".DAT"])
+    for k, stamp in enumerate(stamps.tolist()):
+        struct.pack_into("<I", content, k * (len(content) // SAMPLES) + 4, stamp)
+    yield f"{folder}/a step back and a gap", {**pair, ".DAT": bytes(content)}
+    files = _pair(record, 1991)
+    yield f"{folder}/1991 with counts of -1", {**files, ".DAT": _with_minus_ones(files[".DAT"])}
+
+
+def _with_minus_ones(data: bytes) -> bytes:
+    """The data with the count -1 in the first channel of every tenth sample."""
+    content, row = bytearray(data), len(data) // SAMPLES
+    for k in range(0, SAMPLES, 10):
+        struct.pack_into("<h", content, k * row + 8, -1)
+    return bytes(content)
 
 
 def _pair(record: Recording, revision: Revision = 1999, data_format: DataFormat = "BINARY") -> Files:
@@ -147,6 +184,19 @@ def _rates(*rates: str) -> Edit:
     return lambda lines: [*lines[:RATES], str(len(rates)), *rates, *lines[START:]]
 
 
+def _dates(start: str, trigger: str) -> Edit:
+    return lambda lines: [*lines[:START], start, trigger, *lines[FORMAT:]]
+
+
+def _as_ryb(line: str) -> str:
+    """The line of a channel with the phases' letters of India."""
+    for old, new in (("A", "R"), ("B", "Y"), ("C", "B")):
+        for kind in "IV":
+            if f",{kind}{old},{old}," in line:
+                return line.replace(f",{kind}{old},{old},", f",{kind}{new},{new},")
+    return line
+
+
 _SPARE = range(FIRST_CHANNEL + CHANNELS - 1, FIRST_CHANNEL + CHANNELS)
 _CURRENTS = range(FIRST_CHANNEL, FIRST_CHANNEL + 3)
 _ALL = range(FIRST_CHANNEL, FIRST_CHANNEL + CHANNELS)
@@ -177,6 +227,15 @@ BESIDE_THE_STANDARD: dict[str, Edit] = {
     "channel numbers that skip": _fields(_ALL, {0: "9"}),
     "trigger before the record": _line(TRIGGER, "20/11/2024,06:30:00.250000"),
     "skew of a fifth of a sample": _fields(_CURRENTS, {7: "50"}),
+    "comma in the station's name": _line(0, "PUMP HOUSE, MCC 7,RELAY,1999"),
+    "comma in a channel's name": _fields(range(FIRST_CHANNEL, FIRST_CHANNEL + 1), {1: "IA, pump 7"}),
+    "comma in quotes": _fields(range(FIRST_CHANNEL, FIRST_CHANNEL + 1), {1: '"IA, pump 7"'}),
+    "commas at the ends of lines": lambda lines: [lines[0], *(f"{line}," for line in lines[1:])],
+    "year first": _dates("2024-11-21,06:30:00.250000", "2024-11-21,06:30:00.300000"),
+    "month first": _dates("11/21/2024,06:30:00.250000", "11/21/2024,06:30:00.300000"),
+    "year of two digits": _dates("21/11/24,06:30:00.250000", "21/11/24,06:30:00.300000"),
+    "counts of samples for each rate": _rates(f"{RATE_HZ:g},300", f"{RATE_HZ:g},500"),
+    "phases R, Y, B": lambda lines: [_as_ryb(line) for line in lines],
 }  # fmt: skip
 
 OF_2013: dict[str, Edit] = {
@@ -184,6 +243,7 @@ OF_2013: dict[str, Edit] = {
     "2013 without time quality": lambda lines: lines[: MULTIPLIER + 2],
     "2013 with a time code that is none": _line(MULTIPLIER + 1, "CET,CET"),
     "2013 half an hour off": _line(MULTIPLIER + 1, "-5h30,-5h30"),
+    "2013 with +5h": _line(MULTIPLIER + 1, "+5h,+5h"),
 }
 
 _NS = 250_000

@@ -42,7 +42,7 @@ def batch(count: int, *, spread_delays: bool = False) -> Candidates:
     rng = np.random.default_rng(count)
     return Candidates(
         rng.uniform(0.0, 0.2, count), rng.integers(0, 3, count), rng.uniform(0.0, 1.0, count),
-        rng.uniform(0.0, 0.02, count) if spread_delays else np.zeros(count), np.zeros(count),
+        rng.uniform(0.0, 0.02, count) if spread_delays else np.zeros(count),
     )  # fmt: skip
 
 

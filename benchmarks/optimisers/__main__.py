@@ -37,10 +37,10 @@ Ours: the thesis's HCPA (`core/optimisers/hcpa.py`) as Table 4.1 prints it, and 
 no exclusion, a quarter of the points global; its genetic algorithm and pattern search; and **multistart**
 (`benchmarks/optimisers/multistart.py`: HCPA with 100 points, 60 and 40 on the motor's costs, local refinement
 of the best separated ones, then further rounds with twice the points). The product uses the first three as
-its methods `hcpa`, `genetic` and `pattern-search`. Its default, `hybrid`, is HCPA with 60 points followed by
-its own refinement on phasors (`core/diagnosis/refinement.py`); multistart is the like of it for any cost. No
-part of the product calls multistart, Nelder-Mead, clusters and bounded least squares: they stand beside these
-measurements. `examples/search_a_function.py` shows how to call HCPA.
+its methods `hcpa`, `genetic` and `pattern-search`. Its shortest one, `hybrid`, is HCPA with 60 points,
+followed by its own refinement on phasors (`core/diagnosis/refinement.py`); multistart is the like of it for
+any cost. No part of the product calls multistart, Nelder-Mead, clusters and bounded least squares: they stand
+beside these measurements. `examples/search_a_function.py` shows how to call HCPA.
 Others': NLopt's DIRECT-L, scipy's direct (locally biased), SHGO (Sobol points) and dual annealing, CMA-ES
 with restarts of doubled population (pycma), SG++'s Ritter-Novak grid generator.
 

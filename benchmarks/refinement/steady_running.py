@@ -60,7 +60,7 @@ class ScipyRefinement(Refinement):
                 values = dict(zip(NAMES, (x * steps)[:, np.newaxis], strict=True))
                 candidate = Candidates(
                     values[FAULT_LEVEL], start.winding, values[LOAD_LEVEL], values[TIME_OFFSET],
-                    start.path_ratio,
+                    leakage=start.leakage,
                 )  # fmt: skip
                 point = self._linearise(candidate, unknowns)
                 rows, slopes = point.rows.copy(), point.slopes.copy()

@@ -15,7 +15,7 @@ from core.starts.changes import REFERENCE_STARTS, compare_starts
 from core.starts.compared import StartCause
 from core.starts.examined import ExaminedStart
 from core.starts.examining import examine_start
-from service.alarms.start_rules import LATEST, told_change
+from core.starts.notable import LATEST, notable_change
 from testing.machines.starts import StartRecord
 
 Generator = np.random.Generator
@@ -66,7 +66,7 @@ def lived(life: Life) -> Told:
     for number in range(1, (SOUND_STARTS if is_sound else CHANGED_STARTS) + 1):
         later.append(_examined(life.case.record(random), life, random))
         latest = later[-LATEST:]
-        told = told_change(compare_starts(latest, reference), len(latest))
+        told = notable_change(compare_starts(latest, reference), len(latest))
         standing += told is not None
         if told is not None and first is None:
             first, causes = number, frozenset(told.causes)

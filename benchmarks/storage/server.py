@@ -13,14 +13,14 @@ from service.configuration.settings import Settings
 from service.process.garbage_collection import spare_what_stays
 from service.recording_store.folder import FolderStore
 from service.storage import Repository, connect
-from testing.service.accounts import token_of
+from testing.service.accounts import auditor_token
 
 
 def api_on(repository: Repository, directory: Path) -> FastAPI:
-    """Return the API on a filled database, with a token for all of it; its recording store is empty."""
+    """Return the API on a filled database, with a token for what is asked of it; its store is empty."""
     settings = Settings(data_directory=directory)
     app = create_app(ApiContext(settings, repository, FolderStore(directory / "recordings")))
-    app.state.token = token_of(repository)
+    app.state.token = auditor_token(repository)
     return app
 
 

@@ -7,8 +7,8 @@ from playwright.sync_api import Browser
 from benchmarks.web.answers import Site
 from service.api.access.cookies import NAME
 from service.storage import Repository
-from testing.web.pages import address_of, is_page, page_routes
-from testing.web.site import DESKTOP, PHONE
+from testing.web.pages import address_of, is_page, page_routes, roles_for
+from testing.web.site import DESKTOP, PHONE, log_in
 from testing.web.watched_page import WatchedPage
 
 READY = "() => document.documentElement.dataset.ready === 'true'"
@@ -22,15 +22,19 @@ def faults_of_pages(browser: Browser, site: Site, repository: Repository) -> Ite
     """
     for route in page_routes():
         path = address_of(route, repository)
-        if path is not None and is_page(site.url, path, site.session):
-            yield path, [*_faults(browser, site, path, DESKTOP), *_faults(browser, site, path, PHONE)]
+        if path is None:
+            continue
+        session = log_in(repository, *roles_for(path))
+        if is_page(site.url, path, session):
+            found = [_faults(browser, site.url, session, path, screen) for screen in (DESKTOP, PHONE)]
+            yield path, [fault for faults in found for fault in faults]
 
 
-def _faults(browser: Browser, site: Site, path: str, screen: tuple[int, int]) -> list[str]:
+def _faults(browser: Browser, url: str, session: str, path: str, screen: tuple[int, int]) -> list[str]:
     width, height = screen
     window = browser.new_context(viewport={"width": width, "height": height}, has_touch=width < 600)
-    window.add_cookies([{"name": NAME, "value": site.session, "url": site.url}])
-    watched = WatchedPage(window.new_page(), site.url)
+    window.add_cookies([{"name": NAME, "value": session, "url": url}])
+    watched = WatchedPage(window.new_page(), url)
     try:
         watched.goto(path)
         watched.page.wait_for_function(READY)

@@ -16,7 +16,7 @@ from testing.web.site import log_in
 
 
 def main() -> None:
-    """Print the port and a session of all roles, then answer until the process is ended."""
+    """Print the port and a session of who may do most, then answer until the process is ended."""
     data = Path(sys.argv[1])
     settings = Settings(data_directory=data, port=0)
     repository = Repository(connect(sys.argv[2] if len(sys.argv) > 2 else sqlite_url(data)))

@@ -55,9 +55,9 @@ def _by_channels(motor: Motor) -> float:
 
 def _slip(motor: Motor) -> float:
     """About the slip with shorted rings, in proportion to the load."""
-    nameplate, speed_rpm = motor.nameplate, rotor_of(motor).rated_speed_rpm
-    assert speed_rpm is not None
-    return LOAD_LEVEL * (1.0 - speed_rpm * nameplate.pole_pairs / (60.0 * nameplate.rated_frequency_Hz))
+    slip = motor.nameplate.rated_slip
+    assert slip is not None
+    return LOAD_LEVEL * slip
 
 
 def _admittance(motor: Motor, rotor_ohm: float) -> complex:

@@ -62,7 +62,7 @@ class AsyncOperations:
         return self._items(Request("GET", "/api/v1/motors", query={"health": health, "limit": limit}))
 
     async def get_motor(self, motor: str) -> models.Motor:
-        """Return one motor.
+        """Return one motor, with its stator winding where that is known.
 
         Parameters
         ----------
@@ -486,7 +486,7 @@ class AsyncOperations:
     async def set_baseline(self, motor: str, document: models.BaselineRequest) -> models.Baseline:
         """Replace a motor's baseline by recordings known to be healthy, for diagnoses from now on.
 
-        Recordings in doubt need a reason and who says so; both are kept, in a note of the motor too.
+        Recordings in doubt need a reason; it is kept with who asks, in a note of the motor too.
 
         Parameters
         ----------
@@ -500,7 +500,9 @@ class AsyncOperations:
         )
         return answer
 
-    async def drop_baseline(self, motor: str, *, reason: str | None = None, by: str | None = None) -> None:
+    async def drop_baseline(
+        self, motor: str, *, reason: str | None = None, on_behalf_of: str | None = None
+    ) -> None:
         """Delete a motor's baseline; its recordings stay, and a note of the motor keeps who did so and why.
 
         Parameters
@@ -509,11 +511,15 @@ class AsyncOperations:
             Name of the motor.
         reason
             Why; it is kept.
-        by
-            Who says so; it is kept.
+        on_behalf_of
+            Whom who asks does it for; it is kept beside their account.
         """
         await self._done(
-            Request("DELETE", f"/api/v1/motors/{segment(motor)}/baseline", query={"reason": reason, "by": by})
+            Request(
+                "DELETE",
+                f"/api/v1/motors/{segment(motor)}/baseline",
+                query={"reason": reason, "on_behalf_of": on_behalf_of},
+            )
         )
 
     def list_starts(self, motor: str, *, limit: int | None = None) -> AsyncIterator[models.StartSummary]:
@@ -1113,7 +1119,8 @@ class AsyncOperations:
         motor
             Name of the motor recorded.
         files
-            COMTRADE: .CFG and .DAT, or .CFF; or a .CEV. By their names.
+            COMTRADE: .CFG and .DAT, or .CFF; or a .CEV; or a table of samples (.CSV, .PARQUET, .MAT, .H5,
+            .TDMS, .NPY, .NPZ). By their names.
         """
         answer: tuple[models.RecordingDetails, bool] = await self._new_document(
             Request("POST", "/api/v1/recordings", form={"motor": motor}, files=files)
@@ -1772,7 +1779,7 @@ class AsyncOperations:
         return answer
 
     async def change_password(self, document: models.PasswordChange) -> None:
-        """Change the own password; all own sessions end, this one too.
+        """Change the own password; all own sessions end, this one too, and all own tokens.
 
         Parameters
         ----------
@@ -1780,6 +1787,70 @@ class AsyncOperations:
             What is sent.
         """
         await self._done(Request("PUT", "/api/v1/account/password", json=document))
+
+    async def propose_totp(self, document: models.OwnPassword) -> models.TotpProposal:
+        """Return a new secret for an authenticator app, which counts once a code of it is sent back.
+
+        Parameters
+        ----------
+        document
+            What is sent.
+        """
+        answer: models.TotpProposal = await self._document(
+            Request("POST", "/api/v1/account/totp", json=document)
+        )
+        return answer
+
+    async def confirm_totp(self, document: models.FactorCode) -> models.RecoveryCodes:
+        """Have the app count whose code this is, and return recovery codes, which are shown this once.
+
+        Parameters
+        ----------
+        document
+            What is sent.
+        """
+        answer: models.RecoveryCodes = await self._document(
+            Request("POST", "/api/v1/account/totp/confirmation", json=document)
+        )
+        return answer
+
+    async def make_recovery_codes(self, document: models.OwnPassword) -> models.RecoveryCodes:
+        """Return other recovery codes, which are shown this once; the old ones count no more.
+
+        Parameters
+        ----------
+        document
+            What is sent.
+        """
+        answer: models.RecoveryCodes = await self._document(
+            Request("POST", "/api/v1/account/recovery-codes", json=document)
+        )
+        return answer
+
+    async def remove_second_factor(self, document: models.OwnPassword) -> None:
+        """Remove the own second factor; 409 where a role needs it.
+
+        Parameters
+        ----------
+        document
+            What is sent.
+        """
+        await self._done(Request("POST", "/api/v1/account/second-factor/removal", json=document))
+
+    async def reset_second_factor(self, user: str) -> models.OneTimeCode:
+        """Remove another user's second factor; return a code with which they log in once to set up another.
+
+        Their sessions and tokens end.
+
+        Parameters
+        ----------
+        user
+            Name of the user.
+        """
+        answer: models.OneTimeCode = await self._document(
+            Request("POST", f"/api/v1/users/{segment(user)}/second-factor/reset")
+        )
+        return answer
 
     def list_own_tokens(self, *, limit: int | None = None) -> AsyncIterator[models.Token]:
         """Return the own tokens, without their secrets.
@@ -1792,7 +1863,7 @@ class AsyncOperations:
         return self._items(Request("GET", "/api/v1/account/tokens", query={"limit": limit}))
 
     async def add_own_token(self, document: models.TokenRequest) -> models.NewToken:
-        """Make a token that may do no more than who asks for it. Its secret is shown this once.
+        """Make a token that may do no more than who asks, nor for longer. Its secret is shown this once.
 
         Parameters
         ----------
@@ -1804,8 +1875,12 @@ class AsyncOperations:
         )
         return answer
 
+    async def revoke_own_tokens(self) -> None:
+        """End all of the own tokens."""
+        await self._done(Request("DELETE", "/api/v1/account/tokens"))
+
     async def revoke_own_token(self, token_id: str) -> None:
-        """End one of the own tokens.
+        """End one of the own tokens, and those that were made with it.
 
         Parameters
         ----------
@@ -1824,23 +1899,18 @@ class AsyncOperations:
         """
         return self._items(Request("GET", "/api/v1/tokens", query={"limit": limit}))
 
-    async def add_token(self, user: str, document: models.TokenRequest) -> models.NewToken:
-        """Make a token of a user, such as one that stands for a program. Its secret is shown this once.
+    async def revoke_tokens(self, user: str) -> None:
+        """End all tokens of a user; their sessions stay.
 
         Parameters
         ----------
         user
             Name of the user.
-        document
-            What is sent.
         """
-        answer: models.NewToken = await self._document(
-            Request("POST", f"/api/v1/users/{segment(user)}/tokens", json=document)
-        )
-        return answer
+        await self._done(Request("DELETE", f"/api/v1/users/{segment(user)}/tokens"))
 
     async def revoke_token(self, token_id: str) -> None:
-        """End a token of whomever.
+        """End a token of whomever, and those that were made with it.
 
         Parameters
         ----------
@@ -1860,7 +1930,7 @@ class AsyncOperations:
         return self._items(Request("GET", "/api/v1/users", query={"limit": limit}))
 
     async def add_user(self, document: models.UserRequest) -> models.User:
-        """Make a user.
+        """Make a user. Somebody else's choice of a password is changed before anything is done with it.
 
         Parameters
         ----------
@@ -1882,7 +1952,9 @@ class AsyncOperations:
         return answer
 
     async def change_user(self, user: str, document: models.UserChange) -> models.User:
-        """Change a user's name or roles, disable or enable them; other roles end their sessions.
+        """Change a user's name or roles, disable or enable them.
+
+        Other roles end their sessions, being disabled their tokens, too.
 
         Parameters
         ----------
@@ -1907,7 +1979,7 @@ class AsyncOperations:
         await self._done(Request("DELETE", f"/api/v1/users/{segment(user)}"))
 
     async def set_password(self, user: str, document: models.NewPassword) -> None:
-        """Give a user another password; their sessions end.
+        """Give another user a password, which they change first; their sessions and tokens end.
 
         Parameters
         ----------
@@ -1919,7 +1991,7 @@ class AsyncOperations:
         await self._done(Request("PUT", f"/api/v1/users/{segment(user)}/password", json=document))
 
     async def end_sessions(self, user: str) -> None:
-        """End all sessions of a user; their tokens stay.
+        """End all sessions and all tokens of a user.
 
         Parameters
         ----------

@@ -37,6 +37,9 @@ AlarmKind: TypeAlias = Literal[
     "condition-watch",
     "rotor-fault",
     "rotor-watch",
+    "supply-fault",
+    "supply-watch",
+    "uneven-air-gap",
     "parameter-drift",
     "hard-starts",
     "changed-starts",
@@ -56,6 +59,9 @@ AlarmKind: TypeAlias = Literal[
     "disk-filling",
     "certificate-end",
     "backup-overdue",
+    "password-guessing",
+    "forged-tokens",
+    "owner-locked",
 ]
 
 
@@ -115,6 +121,10 @@ AuditAction: TypeAlias = Literal[
     "logged-in",
     "login-failed",
     "login-locked",
+    "login-refused",
+    "request-refused",
+    "token-refused",
+    "session-refused",
     "login-link-made",
     "logged-out",
     "sessions-ended",
@@ -123,8 +133,18 @@ AuditAction: TypeAlias = Literal[
     "user-unlocked",
     "user-deleted",
     "password-set",
+    "second-factor-begun",
+    "second-factor-added",
+    "second-factor-removed",
+    "second-factor-reset",
+    "recovery-codes-made",
+    "recovery-code-used",
     "token-added",
     "token-revoked",
+    "tokens-revoked",
+    "service-started",
+    "service-ended",
+    "settings-changed",
     "plant-changed",
     "parameters-changed",
     "retention-applied",
@@ -194,17 +214,34 @@ class BaselineRequest(TypedDict):
     """
     The recordings that stand for a motor's healthy condition.
 
-    reason, by: why they do, and who says so; needed where a recording is in doubt.
+    reason: why they do; needed where a recording is in doubt.
     """
 
+    on_behalf_of: NotRequired[str | None]
     recording_ids: list[str]
     reason: NotRequired[str | None]
-    by: NotRequired[str | None]
 
 
 class BodyUploadRecording(TypedDict):
     motor: str
     files: list[str]
+
+
+Cause: TypeAlias = Literal[
+    "healthy",
+    "stator-shorted-turns",
+    "rotor-asymmetry",
+    "high-resistance-connection",
+    "supply-unbalance",
+    "voltage-channel",
+    "current-channel",
+    "load-pulsation",
+    "eccentricity",
+    "load-change",
+    "wrong-parameters",
+    "load-behind-relay",
+    "another-asymmetry",
+]
 
 
 ChangeState: TypeAlias = Literal["as-before", "changed", "not-told-apart", "unknown"]
@@ -219,6 +256,7 @@ class ConditionReference(TypedDict):
 
     complete: whether changes are looked for. standing: level that the asymmetry from the first record on
     would mean if it were shorted turns (..._ci95: 95 % interval, ..._deviation: standard deviation,
+    ..._phase_probabilities: of the phases a, b and c, ..._axis_deg: axis of the coils, as below,
     ..._score: standard deviations beyond what the sensors leave). detectable: step of the level that would be
     seen within ten records in nine of ten cases. from_bus: whether other motors of the bus took part in
     judging it.
@@ -232,7 +270,8 @@ class ConditionReference(TypedDict):
     standing_ci95: tuple[float, float] | None
     standing_deviation: float | None
     standing_phase: Literal["a", "b", "c"] | None
-    standing_path_ratio: float | None
+    standing_phase_probabilities: NotRequired[tuple[float, float, float] | None]
+    standing_axis_deg: NotRequired[float | None]
     standing_score: float | None
     detectable: float | None
     since: str | None
@@ -251,11 +290,16 @@ DeletedBy: TypeAlias = Literal["person", "retention"]
 
 class DiagnosisRequest(TypedDict):
     """
-    How to diagnose: the optimiser and the machine model.
+    How to diagnose: the method and the fault model.
+
+    A search goes with a model of the thesis: with `coil`, `split-winding` is taken. The evidence goes with
+    `coil`: with another model, `hybrid` is taken.
     """
 
-    method: NotRequired[Literal["hybrid", "hcpa", "genetic", "pattern-search", "pattern-search-lhs"]]
-    model: NotRequired[Literal["split-winding", "shorted-winding"]]
+    method: NotRequired[
+        Literal["evidence", "hybrid", "hcpa", "genetic", "pattern-search", "pattern-search-lhs"]
+    ]
+    model: NotRequired[Literal["coil", "split-winding", "shorted-winding"]]
 
 
 DifferenceKind: TypeAlias = Literal[
@@ -315,6 +359,14 @@ class Explanation(TypedDict):
     probability: float
 
 
+class FactorCode(TypedDict):
+    """
+    A code of the authenticator app that is being set up.
+    """
+
+    code: str
+
+
 Fault: TypeAlias = Literal["changed", "removed", "inserted", "reordered", "cut-off", "replaced"]
 
 
@@ -322,14 +374,18 @@ class FittedParameters(TypedDict):
     """
     The hypothesis that explains the currents best; `recordings/{recording_id}/model` draws it.
 
-    It is not the verdict: mu_f may lie within chance, or below zero.
+    It is not the verdict: mu_f may lie within chance, or below zero. leakage: of the shorted turns, 1 where
+    they have it to themselves. axis_rad: from the phase's axis to the coil's, positive as the field turns.
+    linkage: field that a turn of the coil links, over that of the phase's mean turn.
     """
 
     mu_f: float
     theta_f: Literal[0, 1, 2]
     load_level: float
     time_offset_s: float
-    path_ratio: float
+    leakage: float
+    axis_rad: float
+    linkage: float
 
 
 class Forecast(TypedDict):
@@ -360,6 +416,20 @@ class Gateway(TypedDict):
     started_time: str
     relays: int
     problem: str | None
+
+
+class Hypothesis(TypedDict):
+    """
+    One cause that the record's phasors were weighed for; the causes of a record exclude one another.
+
+    log_likelihood_ratio: log of the likelihood of the record with this cause over that of a healthy motor.
+    figure: what was measured of it, in words.
+    """
+
+    cause: Cause
+    probability: float
+    log_likelihood_ratio: float
+    figure: str
 
 
 class IgnoredFile(TypedDict):
@@ -422,6 +492,11 @@ Kind: TypeAlias = Literal[
     "supply",
     "parameters",
     "rotor",
+    "starts",
+    "thermal",
+    "air-gap",
+    "asymmetry",
+    "other-load",
     "unclear",
 ]
 
@@ -456,6 +531,16 @@ class Likelihood(TypedDict):
     probability: float
     log_likelihood_ratio: float | None
     figure: str
+
+
+class LikelyCause(TypedDict):
+    """
+    Causes that together explain all that is measured, "healthy" for none, and their probability.
+    """
+
+    causes: list[str]
+    words: str
+    probability: float
 
 
 class LimitHours(TypedDict):
@@ -520,20 +605,24 @@ class LoadImport(TypedDict):
 
 class LoginRequest(TypedDict):
     """
-    Who logs in.
+    Who logs in. code: of their authenticator app, or a recovery code, where they have a second factor.
     """
 
     name: str
     password: str
+    code: NotRequired[str | None]
 
 
 class LoginWays(TypedDict):
     """
     How one logs in here. oidc: where a browser begins to log in at the plant's identity provider.
+
+    notice: on the use of the service. Who logs in acknowledges it.
     """
 
     password: bool
     oidc: str | None
+    notice: str | None
 
 
 MeasurementSource: TypeAlias = Literal["load-profile", "polled"]
@@ -541,7 +630,7 @@ MeasurementSource: TypeAlias = Literal["load-profile", "polled"]
 
 class NewPassword(TypedDict):
     """
-    Another password for a user.
+    Change password for a user.
     """
 
     password: str
@@ -556,6 +645,7 @@ class NewToken(TypedDict):
     user: str
     label: str
     scope: list[str] | None
+    parent: str | None
     created_time: str
     expires_time: str | None
     used_time: str | None
@@ -578,30 +668,33 @@ class Note(TypedDict):
     """
     What somebody told of a motor, or what its files tell.
 
-    It happened at `time`; `by` told it at `made_time`. The condition follows from all
-    but those of kind `note` and those that were withdrawn.
+    It happened at `time`; the account `by` told it at `made_time`, perhaps for somebody whom it named. by,
+    withdrawn_by: null where the account was not kept. The condition follows from all but those of kind `note`
+    and those that were withdrawn.
     """
 
     id: str
     motor: str
     kind: EventKind
     text: str
-    by: str
+    by: str | None
+    on_behalf_of: str | None
     time: str
     made_time: str
     withdrawn_time: str | None
     withdrawn_by: str | None
+    withdrawn_on_behalf_of: str | None
     withdrawn_reason: str | None
 
 
 class NoteRequest(TypedDict):
     """
-    What a person tells of a motor. `time`: when it happened, by default now. `by`: by default who asks.
+    What a person tells of a motor. `time`: when it happened, by default now.
     """
 
+    on_behalf_of: NotRequired[str | None]
     kind: NotRequired[EventKind]
     text: str
-    by: NotRequired[str | None]
     time: NotRequired[str | None]
 
 
@@ -626,7 +719,23 @@ NotificationKind: TypeAlias = Literal["alarms", "escalation", "digest", "report"
 NotificationState: TypeAlias = Literal["queued", "sending", "sent", "dead", "withdrawn"]
 
 
+class OneTimeCode(TypedDict):
+    """
+    A code that stands for the second factor once.
+    """
+
+    code: str
+
+
 Operation: TypeAlias = Literal["running", "not-running", "start", "stop", "trip"]
+
+
+class OwnPassword(TypedDict):
+    """
+    The own password, again, for what a session left open must not do.
+    """
+
+    password: str
 
 
 class PageAuditEntry(TypedDict):
@@ -659,21 +768,17 @@ class PageNotificationChannel(TypedDict):
     next_cursor: str | None
 
 
-class Pair(TypedDict):
-    """
-    Two causes that show in the same figures, and the log of their likelihood together, as of one alone.
-    """
-
-    causes: list[str]
-    log_likelihood_ratio: float
-
-
 ParameterName: TypeAlias = Literal[
     "stator_resistance_ohm", "rotor_resistance_ohm", "magnetising_inductance_H", "leakage_inductance_H"
 ]
 
 
 ParametersSource: TypeAlias = Literal["given", "commissioned", "data-sheet", "typical"]
+
+
+Part: TypeAlias = Literal[
+    "stator", "rotor", "supply", "measurement", "starts", "thermal", "air-gap", "parameters", "load"
+]
 
 
 class PasswordChange(TypedDict):
@@ -843,6 +948,14 @@ class RecordingWanted(TypedDict):
     seconds: NotRequired[float | None]
 
 
+class RecoveryCodes(TypedDict):
+    """
+    Codes that stand for the second factor, each of them once. They are not kept here.
+    """
+
+    recovery_codes: list[str]
+
+
 class Refusal(TypedDict):
     """
     An alarm that could not be acknowledged, and why.
@@ -913,11 +1026,11 @@ ReportOutcome: TypeAlias = Literal["added", "joined", "known"]
 
 class RestartRequest(TypedDict):
     """
-    Why the motor counts as healthy as it is. `time`: from when on, by default now. `by`: as of notes.
+    Why the motor counts as healthy as it is. `time`: from when on, by default now.
     """
 
+    on_behalf_of: NotRequired[str | None]
     reason: str
-    by: NotRequired[str | None]
     time: NotRequired[str | None]
 
 
@@ -1287,12 +1400,15 @@ class ThermalState(TypedDict):
 class Token(TypedDict):
     """
     A secret of a user for a program, without the secret. scope: null for all that the user may.
+
+    parent: the token that asked for this one, and with which it ends; null where a person did.
     """
 
     id: str
     user: str
     label: str
     scope: list[str] | None
+    parent: str | None
     created_time: str
     expires_time: str | None
     used_time: str | None
@@ -1300,7 +1416,9 @@ class Token(TypedDict):
 
 class TokenRequest(TypedDict):
     """
-    What a new token is for. scope: the permissions it has, by default all of its user.
+    What a new token is for. scope: the permissions it has, by default all of who asks.
+
+    expires_time: by default as late as the settings, and the token that asks, let it.
     """
 
     label: str
@@ -1320,6 +1438,15 @@ class ToldAlarm(TypedDict):
     motor: str | None
     ied: str | None
     subject: str
+
+
+class TotpProposal(TypedDict):
+    """
+    A secret for an authenticator app. uri: the same as the app reads it from a picture.
+    """
+
+    secret: str
+    uri: str
 
 
 class TrackedChange(TypedDict):
@@ -1350,11 +1477,16 @@ TrackingState: TypeAlias = Literal["steady", "drifting", "undetermined"]
 TriggerAction: TypeAlias = Literal["set-reset", "pulse"]
 
 
+Urgency: TypeAlias = Literal["today", "within-days", "within-weeks", "next-stop", "none"]
+
+
 class User(TypedDict):
     """
     Somebody who may log in. has_password: whether with a password; subject: with an identity provider.
 
+    has_second_factor: whether their password lets nobody in alone.
     locked_until_time: none of their logins is tried before from some address, because too many failed.
+    password_set_by: who else gave them their password, until they change it.
     """
 
     name: str
@@ -1362,9 +1494,11 @@ class User(TypedDict):
     roles: list[Role]
     disabled: bool
     has_password: bool
+    has_second_factor: bool
     subject: str | None
     created_time: str
     password_set_time: str | None
+    password_set_by: str | None
     last_login_time: str | None
     last_login_origin: str | None
     locked_until_time: NotRequired[str | None]
@@ -1382,7 +1516,9 @@ class UserChange(TypedDict):
 
 class UserRequest(TypedDict):
     """
-    A new user. Without a password nobody can log in as them, but they may have tokens.
+    A new user, who changes the password first. Without one nobody can log in as them.
+
+    The role SECAUD is given by the owner of the service's files alone.
     """
 
     name: str
@@ -1409,13 +1545,16 @@ class WaveformChannel(TypedDict):
     maximum: list[float | None]
 
 
+WindingKind: TypeAlias = Literal["lap", "concentric"]
+
+
 class Withdrawal(TypedDict):
     """
-    Why a note was wrong. `by`: by default who asks.
+    Why a note was wrong.
     """
 
+    on_behalf_of: NotRequired[str | None]
     reason: str
-    by: NotRequired[str | None]
 
 
 class FieldError(TypedDict):
@@ -1446,6 +1585,10 @@ class Problem(TypedDict):
 class Account(TypedDict):
     """
     Who asks, and what they may do. way: how they showed who they are.
+
+    password_set_by: who else gave them the password of this session; they change it before they do anything.
+    second_factor: "missing" where a role needs one and there is none; then one may but set it up.
+    recovery_codes_left: that were not used.
     """
 
     name: str
@@ -1453,6 +1596,9 @@ class Account(TypedDict):
     roles: list[Role]
     permissions: list[Permission]
     way: Literal["session", "token", "proxy", "none"]
+    password_set_by: str | None
+    second_factor: Literal["none", "missing", "set-up"]
+    recovery_codes_left: int
 
 
 class Acquisition(TypedDict):
@@ -1614,7 +1760,6 @@ class Classification(TypedDict):
 
     answer: the likeliest causes. is_told: whether they are likely enough to be the answer alone. words: the
     answer as people read it. The verdict is what raises alarms; where it differs, `reasons` say so.
-    pairs: empty of a diagnosis that an earlier version made.
     """
 
     answer: list[str]
@@ -1624,39 +1769,6 @@ class Classification(TypedDict):
     likelihoods: list[Likelihood]
     explanations: list[Explanation]
     not_told_apart: list[NotToldApart]
-    reasons: list[str]
-    pairs: NotRequired[list[Pair]]
-
-
-class Condition(TypedDict):
-    """
-    The condition of a motor over time, judged from all its records: what a plant acts on.
-
-    kind: what has changed, or stands out from the first record on; `candidates` where that is unclear.
-    mu_f: fault level in all, change: since the reference, as fractions of the phase turns, each with its 95 %
-    interval from noise, sensors and parameters. size: of the change in its own measure, for example the
-    relative error of a channel, with its 95 % interval. since: first record that shows the change.
-    as_of: latest record that counts; stale: whether that is too old.
-    """
-
-    motor: str
-    state: State
-    kind: Kind
-    candidates: list[Kind]
-    phase: Literal["a", "b", "c"] | None
-    mu_f: float | None
-    mu_f_ci95: tuple[float, float] | None
-    change: float | None
-    change_ci95: tuple[float, float] | None
-    size: float | None
-    size_ci95: NotRequired[tuple[float, float] | None]
-    since: str | None
-    growth_per_day: float | None
-    forecast: Forecast
-    reference: ConditionReference
-    as_of: str | None
-    stale: bool
-    advice: str
     reasons: list[str]
 
 
@@ -1901,22 +2013,6 @@ class Measurement(TypedDict):
     minimum_vca_V: float | None
 
 
-class Motor(TypedDict):
-    """
-    A motor; `schedule`, a cron expression in UTC, says when it is recorded without anybody asking.
-
-    parameters_source: where its parameters come from: given in the motors file, commissioned from a recorded
-    start, from a data sheet, or typical of its rating. With typical ones the motor is on watch at most.
-    """
-
-    name: str
-    description: str
-    site: str
-    ied: str
-    schedule: str | None
-    parameters_source: ParametersSource
-
-
 class MotorClassification(TypedDict):
     """
     The one answer of a motor. records: number of its latest records that took part.
@@ -1930,7 +2026,6 @@ class MotorClassification(TypedDict):
     explanations: list[Explanation]
     not_told_apart: list[NotToldApart]
     reasons: list[str]
-    pairs: NotRequired[list[Pair]]
     motor: str
     records: int
 
@@ -2076,6 +2171,22 @@ class PageTrackedTrendPoint(TypedDict):
 class PageUser(TypedDict):
     items: list[User]
     next_cursor: str | None
+
+
+class PartOfMotor(TypedDict):
+    """
+    What is said of one part of a motor, or of what surrounds it.
+
+    explained_by: the part whose finding explains this one, which does not count again.
+    """
+
+    part: Part
+    state: State
+    finding: str
+    since: str | None
+    advice: str
+    reasons: list[str]
+    explained_by: Part | None
 
 
 class Recording(TypedDict):
@@ -2262,6 +2373,20 @@ class Waveform(TypedDict):
     channels: list[WaveformChannel]
 
 
+class Winding(TypedDict):
+    """
+    How a stator is wound, as the motors file has it.
+
+    kind: how the coils lie. slots: of the stator. layers: coil sides in a slot. coil_pitch_slots: slots from
+    side to side of a coil.
+    """
+
+    kind: WindingKind
+    slots: int
+    layers: int
+    coil_pitch_slots: int | None
+
+
 class Acknowledgements(TypedDict):
     """
     The alarms that were acknowledged, and those for which that was not possible.
@@ -2275,19 +2400,30 @@ class Baseline(TypedDict):
     """
     The motor's healthy recordings; empty where it has no baseline.
 
-    When they were chosen, why and by whom, where that was said, and which of them were in doubt.
+    When they were chosen, why, where that was said, and which of them were in doubt. by: the account that
+    chose them, null where it was not kept; on_behalf_of: whom it named.
     """
 
     recordings: list[Recording]
     chosen_time: str | None
     reason: str | None
     by: str | None
+    on_behalf_of: str | None
     doubts: list[BaselineDoubt]
 
 
-class ConditionDetails(TypedDict):
+class Condition(TypedDict):
     """
-    A condition with what was said from each of the latest records on, oldest first.
+    The condition of a motor over time, judged from all its records: what a plant acts on.
+
+    state: of its worst part. kind: what that part has; `finding`: the same in words. causes: explanations of
+    all that is measured, the likeliest first. parts: each of them. `candidates`: what an unclear kind may be.
+    phase: null where it is less than 95 % sure. phase_probabilities: of a, b and c, if it is shorted turns.
+    axis_deg: electrical degrees of their coils' axis from the phase's, where the motor's winding is known.
+    mu_f: fault level in all, change: since the reference, as fractions of the phase turns, each with its 95 %
+    interval from noise, sensors and parameters. size: of the change in its own measure, for example the
+    relative error of a channel, with its 95 % interval. since: first record that shows the change.
+    as_of: latest record that counts; stale: whether that is too old.
     """
 
     motor: str
@@ -2295,6 +2431,8 @@ class ConditionDetails(TypedDict):
     kind: Kind
     candidates: list[Kind]
     phase: Literal["a", "b", "c"] | None
+    phase_probabilities: NotRequired[tuple[float, float, float] | None]
+    axis_deg: NotRequired[float | None]
     mu_f: float | None
     mu_f_ci95: tuple[float, float] | None
     change: float | None
@@ -2309,6 +2447,42 @@ class ConditionDetails(TypedDict):
     stale: bool
     advice: str
     reasons: list[str]
+    finding: NotRequired[str]
+    urgency: NotRequired[Urgency]
+    causes: NotRequired[list[LikelyCause]]
+    parts: NotRequired[list[PartOfMotor]]
+
+
+class ConditionDetails(TypedDict):
+    """
+    A condition with what was said from each of the latest records on, oldest first.
+    """
+
+    motor: str
+    state: State
+    kind: Kind
+    candidates: list[Kind]
+    phase: Literal["a", "b", "c"] | None
+    phase_probabilities: NotRequired[tuple[float, float, float] | None]
+    axis_deg: NotRequired[float | None]
+    mu_f: float | None
+    mu_f_ci95: tuple[float, float] | None
+    change: float | None
+    change_ci95: tuple[float, float] | None
+    size: float | None
+    size_ci95: NotRequired[tuple[float, float] | None]
+    since: str | None
+    growth_per_day: float | None
+    forecast: Forecast
+    reference: ConditionReference
+    as_of: str | None
+    stale: bool
+    advice: str
+    reasons: list[str]
+    finding: NotRequired[str]
+    urgency: NotRequired[Urgency]
+    causes: NotRequired[list[LikelyCause]]
+    parts: NotRequired[list[PartOfMotor]]
     history: list[ConditionPoint]
 
 
@@ -2317,12 +2491,15 @@ class Diagnosis(TypedDict):
     The result for one recording, as `mcc diagnose --json` prints it.
 
     mu_f: equivalent fault level, fraction of the phase turns. theta_f: 0, 1, 2 = winding on terminals
-    a, b, c. load_level: load torque over rated torque. ..._ci95: 95 % interval from noise, sensors and
-    parameters. ..._scatter95: from the record's own scatter alone. speed_rpm: of the shaft, from the fit.
-    detection_limit: nine of ten such recordings show a fault of that mu_f. currents_only: the voltages are
-    assumed. operation: what the motor does in the recording. rotor, supply: what it shows of them.
-    classification: which causes are likely. eccentricity, pulsation: what it shows of the air gap, and of a
-    load that swings.
+    a, b, c; it and phase are null where no phase is named, which takes 0.95 of phase_probabilities.
+    load_level: load torque over rated torque. ..._ci95: 95 % interval from noise, sensors, parameters, and
+    what is not known of the turns. ..._scatter95: from the record's own scatter alone. speed_rpm: of the
+    shaft, from the fit. detection_limit: nine of ten such recordings show a fault of that mu_f.
+    currents_only: the voltages are assumed. operation: what the motor does in the recording.
+    phase_probabilities: that shorted turns, if there are any, lie in the winding on terminal a, b, c; null of
+    a motor with slip rings. hypotheses: the causes that the phasors were weighed for, the likeliest first.
+    rotor, supply: what it shows of them. classification: which causes are likely, by all that was examined.
+    eccentricity, pulsation: what it shows of the air gap, and of a load that swings.
     Diagnoses of earlier versions lack some: of those that knew only the scatter, ..._ci95 is null.
     """
 
@@ -2349,6 +2526,8 @@ class Diagnosis(TypedDict):
     currents_only: NotRequired[bool]
     operation: NotRequired[Operation | None]
     fit: NotRequired[FittedParameters | None]
+    phase_probabilities: NotRequired[tuple[float, float, float] | None]
+    hypotheses: NotRequired[list[Hypothesis]]
     rotor: NotRequired[RotorFinding | None]
     supply: NotRequired[SupplyFigures | None]
     classification: NotRequired[Classification | None]
@@ -2457,6 +2636,24 @@ class ListedMotor(TypedDict):
     schedule: str | None
     parameters_source: ParametersSource
     health: NotRequired[Health | None]
+
+
+class Motor(TypedDict):
+    """
+    A motor; `schedule`, a cron expression in UTC, says when it is recorded without anybody asking.
+
+    parameters_source: where its parameters come from: given in the motors file, commissioned from a recorded
+    start, from a data sheet, or typical of its rating. With typical ones the motor is on watch at most.
+    winding: of its stator; null where the motors file does not tell it.
+    """
+
+    name: str
+    description: str
+    site: str
+    ied: str
+    schedule: str | None
+    parameters_source: ParametersSource
+    winding: Winding | None
 
 
 class PageDiagnosisRun(TypedDict):

@@ -7,8 +7,8 @@ one with the cause, is expected to have.
 from collections.abc import Sequence
 from math import log
 
-from core.classification.causes import Cause
 from core.classification.evidence import Block, log_sum, only
+from core.diagnosis.causes import Cause
 
 EVEN_CAGE, UNEVEN_CAGES = 0.005, (0.02, 0.06, 0.18)
 """Asymmetry of a sound cage, rms (-46 dB), and of cages with broken bars: one of 28 has 0.034."""
@@ -16,20 +16,7 @@ NORMAL_95 = 1.96
 
 
 def rotor_block(severity_dB: float | None, ci95: tuple[float, float] | None) -> Block | None:
-    """Return the evidence of the rotor's asymmetry.
-
-    Parameters
-    ----------
-    severity_dB : float or None
-        Asymmetry of the rotor's resistance, of a record or of a motor's latest ones [dB].
-    ci95 : tuple of float or None
-        Its 95 % interval [dB].
-
-    Returns
-    -------
-    Block or None
-        The evidence; None where nothing can be told.
-    """
+    """Return the evidence of the rotor's asymmetry."""
     if severity_dB is None or ci95 is None:
         return None
     value = ratio(severity_dB)
@@ -44,24 +31,7 @@ def rotor_block(severity_dB: float | None, ci95: tuple[float, float] | None) -> 
 
 
 def log_ratio(value: float, deviation: float, sound: float, uneven: Sequence[float]) -> float:
-    """Return the log of the likelihood ratio of an amplitude: with the cause to without it.
-
-    Parameters
-    ----------
-    value : float
-        The amplitude.
-    deviation : float
-        Standard deviation of its measurement.
-    sound : float
-        Amplitude of a sound motor, rms.
-    uneven : sequence of float
-        The same of motors with the cause, each as likely as the others.
-
-    Returns
-    -------
-    float
-        The log [nats].
-    """
+    """Return the log of the likelihood ratio of an amplitude: with the cause to without it."""
 
     def log_density(expected: float) -> float:
         variance = 2.0 * deviation**2 + expected**2
@@ -72,16 +42,5 @@ def log_ratio(value: float, deviation: float, sound: float, uneven: Sequence[flo
 
 
 def ratio(level_dB: float) -> float:
-    """Return the ratio of amplitudes that a level means.
-
-    Parameters
-    ----------
-    level_dB : float
-        Level [dB].
-
-    Returns
-    -------
-    float
-        The ratio.
-    """
+    """Return the ratio of amplitudes that a level means."""
     return float(10.0 ** (level_dB / 20.0))

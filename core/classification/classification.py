@@ -1,20 +1,22 @@
 """The one answer: which causes are likely, from independent evidence and what is known before."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from math import exp, log
 from typing import Final
 
-from core.classification.causes import NOTHING, PRIORS, Cause, Causes, words
 from core.classification.evidence import Evidence, log_sum, together
 from core.classification.telling import what_tells
+from core.diagnosis.causes import NOTHING, PRIORS, Cause, Causes, words
 
 TOLD: Final = 0.9
 """Probability from which on an explanation is the answer."""
 FEW: Final = 0.05
 """Explanations with less probability than this are no alternatives."""
+BESIDE: Final = 0.1
+"""Probability from which on a cause is told that may be there beside the answer."""
 MOST_ALTERNATIVES: Final = 3
 """Explanations that an answer names at most, the likeliest among them."""
+NOT_ASSESSED: Final = "not assessed"
 NOTHING_SEEN: Final = "nothing is seen, and not all is known"
 MOST_SHOWN: Final = 6
 
@@ -42,13 +44,7 @@ class Likelihood:
     figure: str
 
     def as_dict(self) -> dict[str, object]:
-        """Return the figures as JSON takes them.
-
-        Returns
-        -------
-        dict of str to object
-            The figures by name.
-        """
+        """Return the figures as JSON takes them."""
         return {
             "cause": str(self.cause),
             "probability": self.probability,
@@ -95,13 +91,7 @@ class NotToldApart:
     tests: tuple[str, ...]
 
     def as_dict(self) -> dict[str, object]:
-        """Return the alternatives as JSON takes them.
-
-        Returns
-        -------
-        dict of str to object
-            Both explanations, and what would tell.
-        """
+        """Return the alternatives as JSON takes them."""
         return {"explanations": [self.one.names, self.other.names], "tests": list(self.tests)}
 
 
@@ -123,8 +113,6 @@ class Classification:
         What is left open, and what would tell; empty where the answer is told.
     reasons : tuple of str
         Why, in words.
-    pairs : mapping of frozenset of Cause to float, optional
-        Log of the likelihood ratio of two causes that show in the same figures, to a healthy motor [nats].
     """
 
     answer: Explanation
@@ -133,11 +121,20 @@ class Classification:
     explanations: tuple[Explanation, ...]
     not_told_apart: tuple[NotToldApart, ...]
     reasons: tuple[str, ...]
-    pairs: Mapping[Causes, float] = field(default_factory=dict)
+
+    @property
+    def is_assessed(self) -> bool:
+        """Whether there is evidence of anything; without it the answer is only what was likely before."""
+        return any(
+            one.log_likelihood_ratio is not None and one.cause is not Cause.HEALTHY
+            for one in self.likelihoods
+        )
 
     @property
     def words(self) -> str:
         """The answer as people read it."""
+        if not self.is_assessed:
+            return NOT_ASSESSED
         if self.is_told:
             return words(self.answer.causes)
         if not self.not_told_apart:
@@ -151,23 +148,20 @@ class Classification:
         Returns
         -------
         dict of str to object
-            The answer; its keys are a contract.
+            The answer; its keys are a contract. Without evidence it names no cause, with probability 0.
         """
+        assessed = self.is_assessed
+        likelihoods = [one for one in self.likelihoods if assessed or one.cause is not Cause.HEALTHY]
+        explanations = self.explanations if assessed else ()
         return {
-            "answer": self.answer.names,
+            "answer": self.answer.names if assessed else [],
             "is_told": self.is_told,
-            "probability": self.answer.probability,
+            "probability": self.answer.probability if assessed else 0.0,
             "words": self.words,
-            "likelihoods": [one.as_dict() for one in self.likelihoods],
-            "explanations": [
-                {"causes": one.names, "probability": one.probability} for one in self.explanations
-            ],
+            "likelihoods": [one.as_dict() for one in likelihoods],
+            "explanations": [{"causes": one.names, "probability": one.probability} for one in explanations],
             "not_told_apart": [one.as_dict() for one in self.not_told_apart],
             "reasons": list(self.reasons),
-            "pairs": [
-                {"causes": sorted(map(str, pair)), "log_likelihood_ratio": ratio}
-                for pair, ratio in self.pairs.items()
-            ],
         }
 
 
@@ -176,26 +170,16 @@ def classify(evidence: Evidence) -> Classification:
 
     Causes are independent before the evidence (`causes.PRIORS`), and the blocks of evidence are independent
     of each other given the causes. A cause of which nothing is known keeps its prior.
-
-    Parameters
-    ----------
-    evidence : Evidence
-        What is measured.
-
-    Returns
-    -------
-    Classification
-        The answer.
     """
     known = frozenset().union(*(block.causes for block in evidence.blocks))
-    weighed = together(known)
+    weighed = together(known, evidence.exclusive)
     logs = [_log_prior(causes) + sum(block.of(causes) for block in evidence.blocks) for causes in weighed]
     total = log_sum(logs)
     found = sorted(
         (Explanation(causes, exp(one - total)) for causes, one in zip(weighed, logs, strict=True)),
         key=lambda one: -one.probability,
     )
-    answer = found[0]
+    answer = _shared(found)
     is_certain = answer.probability >= TOLD
     # A motor whose winding nothing is known of is not called healthy.
     is_told = is_certain and (bool(answer.causes) or Cause.SHORTED_TURNS in known)
@@ -211,14 +195,23 @@ def classify(evidence: Evidence) -> Classification:
         explanations=tuple(found[:MOST_SHOWN]),
         not_told_apart=apart,
         reasons=_reasons(evidence, answer, likelihoods),
-        pairs=_pairs(evidence),
     )
 
 
-def _pairs(evidence: Evidence) -> dict[Causes, float]:
-    """Return the evidence of two causes together, where one block speaks of both; else it is their sum."""
-    spoken_of = {pair for block in evidence.blocks for pair in together(block.causes) if len(pair) == 2}
-    return {pair: sum(block.of(pair) for block in evidence.blocks) for pair in sorted(spoken_of, key=sorted)}
+def _shared(found: list[Explanation]) -> Explanation:
+    """Return what the likely explanations have in common, where that is surely there; else the likeliest.
+
+    Whether the supply of a motor with shorted turns is unbalanced, say, may stay open: the turns do not.
+    """
+    reached, shared = 0.0, found[0].causes
+    for one in found:
+        if reached >= TOLD:
+            break
+        reached += one.probability
+        shared &= one.causes
+    if not shared:
+        return found[0]
+    return Explanation(shared, sum(one.probability for one in found if shared <= one.causes))
 
 
 def _log_prior(causes: Causes) -> float:
@@ -266,6 +259,14 @@ def _reasons(evidence: Evidence, answer: Explanation, likelihoods: tuple[Likelih
         f"the verdict differs: {verdict.words}. It is what raises alarms; this answer weighs all causes"
         for verdict in evidence.verdicts
         if verdict.is_there != (verdict.cause in answer.causes)
+    ]
+    reasons += [
+        f"{words(frozenset({one.cause}))} may be there too ({one.probability:.0%}): {one.figure}"
+        for one in likelihoods
+        if answer.causes
+        and one.cause not in answer.causes
+        and one.log_likelihood_ratio is not None
+        and one.probability >= BESIDE
     ]
     untold = [words(frozenset({one.cause})) for one in likelihoods if one.log_likelihood_ratio is None]
     if untold:

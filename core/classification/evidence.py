@@ -6,13 +6,13 @@ from itertools import combinations
 from math import exp, log
 from typing import Final, NamedTuple
 
-from core.classification.causes import NOTHING, Cause, Causes
+from core.diagnosis.causes import NOTHING, Cause, Causes
 
 MOST_TOGETHER: Final = 2
 """Causes that are weighed together; three at once are not looked for."""
 MOST_NATS: Final = 100.0
-"""Evidence that one block counts at most: no model is exact enough to be more certain than that. Stronger
-evidence is scaled down as a whole, so that it still says which of two causes is likelier."""
+"""Evidence that one block counts at most: no model is exact enough to be more certain than that. What goes
+beyond is taken off all causes alike, so that it still says how much likelier one is than another."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +25,7 @@ class Block:
         The causes that they speak of.
     log_likelihood : mapping of frozenset of Cause to float
         Log of the likelihood of the figures where these causes are there, over that where none is. It has
-        every combination of up to MOST_TOGETHER of the causes but the empty one.
+        every combination of up to MOST_TOGETHER of the causes that can be there together but the empty one.
     figures : mapping of Cause to str
         What was measured of a cause, in words.
     """
@@ -35,42 +35,17 @@ class Block:
     figures: Mapping[Cause, str] = field(default_factory=dict)
 
     def of(self, causes: Causes) -> float:
-        """Return the evidence for causes, of which those that the block does not speak of change nothing.
-
-        Parameters
-        ----------
-        causes : frozenset of Cause
-            Causes that are there together.
-
-        Returns
-        -------
-        float
-            Log of the likelihood ratio to none of them, scaled to MOST_NATS [nats].
-        """
+        """Return the evidence for causes, of which those that the block does not speak of change nothing."""
         own = causes & self.causes
         if own == NOTHING:
             return 0.0
-        most = max(self.log_likelihood.values())
-        return self.log_likelihood[own] * min(1.0, MOST_NATS / max(most, MOST_NATS))
+        beyond = max(max(self.log_likelihood.values()) - MOST_NATS, 0.0)
+        found = self.log_likelihood[own]
+        return max(found - beyond, min(found, 0.0))
 
 
 def only(cause: Cause, log_ratio: float, figure: str) -> Block:
-    """Return the block of figures that speak of one cause alone.
-
-    Parameters
-    ----------
-    cause : Cause
-        The cause.
-    log_ratio : float
-        Log of their likelihood with the cause over that without it [nats].
-    figure : str
-        What was measured, in words.
-
-    Returns
-    -------
-    Block
-        The block.
-    """
+    """Return the block of figures that speak of one cause alone."""
     causes = frozenset({cause})
     return Block(causes, {causes: log_ratio}, {cause: figure})
 
@@ -105,42 +80,24 @@ class Evidence:
         Causes of which nothing is known, and why.
     verdicts : tuple of Verdict, optional
         What is said of single causes elsewhere; only those that are sure of it.
+    exclusive : frozenset of Cause, optional
+        Causes of which there is one at most.
     """
 
     blocks: tuple[Block, ...]
     untold: Mapping[Cause, str] = field(default_factory=dict)
     verdicts: tuple[Verdict, ...] = ()
+    exclusive: Causes = NOTHING
 
 
 def log_sum(logs: Sequence[float]) -> float:
-    """Return the log of the sum of what logs are given of.
-
-    Parameters
-    ----------
-    logs : sequence of float
-        Logs, one at least.
-
-    Returns
-    -------
-    float
-        Log of the sum.
-    """
+    """Return the log of the sum of what logs are given of."""
     highest = max(logs)
     return highest + log(sum(exp(one - highest) for one in logs))
 
 
-def together(causes: Iterable[Cause]) -> list[Causes]:
-    """Return all combinations of up to MOST_TOGETHER causes, the empty one first.
-
-    Parameters
-    ----------
-    causes : iterable of Cause
-        Causes.
-
-    Returns
-    -------
-    list of frozenset of Cause
-        Combinations.
-    """
+def together(causes: Iterable[Cause], exclusive: Causes = NOTHING) -> list[Causes]:
+    """Return all combinations of up to MOST_TOGETHER causes, no two of the exclusive, the empty one first."""
     known = sorted(causes)
-    return [frozenset(some) for n in range(MOST_TOGETHER + 1) for some in combinations(known, n)]
+    every = (frozenset(some) for n in range(MOST_TOGETHER + 1) for some in combinations(known, n))
+    return [some for some in every if len(some & exclusive) < 2]

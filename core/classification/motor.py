@@ -11,12 +11,12 @@ from types import MappingProxyType
 from typing import Final
 
 from core.classification.amplitude import rotor_block
-from core.classification.causes import NOTHING, PRIORS, Cause
 from core.classification.classification import Classification, classify
 from core.classification.evidence import Block, Evidence, Verdict, only, together
 from core.classification.phases import SOUND, kind_words, phases_block
 from core.classification.record_answer import RecordAnswer, latest_figure, median_beside
 from core.condition.kinds import Kind, State
+from core.diagnosis.causes import NOTHING, PRIORS, Cause
 from core.rotor.finding import RotorState
 from core.rotor.trend import RotorCondition
 from core.starts.compared import StartCause, StartChanges

@@ -13,10 +13,10 @@ from statistics import median
 from types import MappingProxyType
 from typing import Final
 
-from core.classification.causes import Cause, Causes
 from core.classification.evidence import Block, log_sum, together
 from core.classification.record_answer import RecordAnswer, latest_figure, median_beside
 from core.condition.kinds import Kind, State
+from core.diagnosis.causes import Cause, Causes
 from core.rotor.finding import RotorState
 from core.terms import phrase
 
@@ -51,28 +51,7 @@ def phases_block(
     rotor: RotorState,
     records: Sequence[RecordAnswer],
 ) -> Block | None:
-    """Return the evidence of unlike phases, from the condition and, of what it does not name, the records.
-
-    Parameters
-    ----------
-    state : State
-        State of the motor's condition.
-    kind : Kind
-        What it says has changed.
-    candidates : sequence of Kind
-        What an unclear kind may be.
-    phase : str or None
-        Phase of the change.
-    rotor : RotorState
-        State of the motor's rotor.
-    records : sequence of RecordAnswer
-        Answers of the latest records.
-
-    Returns
-    -------
-    Block or None
-        The evidence; None where nothing is known of the condition.
-    """
+    """Return the evidence of unlike phases, from the condition and, of what it does not name, the records."""
     if state is State.UNKNOWN:
         return None
     changes = _changes(kind, candidates, rotor)
@@ -100,22 +79,7 @@ def phases_block(
 
 
 def kind_words(kind: Kind, candidates: Sequence[Kind], phase: str | None) -> str:
-    """Return what the condition says has changed, in words.
-
-    Parameters
-    ----------
-    kind : Kind
-        What has changed.
-    candidates : sequence of Kind
-        What an unclear kind may be.
-    phase : str or None
-        Phase of the change.
-
-    Returns
-    -------
-    str
-        The words.
-    """
+    """Return what the condition says has changed, in words."""
     if kind is Kind.NONE:
         return "nothing has changed"
     where = "" if phase is None else f" {phase}"

@@ -3,21 +3,23 @@
 from types import MappingProxyType
 from typing import Final
 
-from core.classification.amplitude import rotor_block
-from core.classification.asymmetry import asymmetry_block
-from core.classification.causes import PRIORS, Cause
+from core.classification.amplitude import log_ratio, rotor_block
 from core.classification.classification import Classification, classify
 from core.classification.evidence import Block, Evidence, Verdict, only
 from core.classification.swings import eccentricity_block, pulsation_block
-from core.condition.errors import ObservationError
 from core.condition.measuring.observing import Examined
+from core.diagnosis.causes import OF_ONE_ASYMMETRY, PRIORS, Cause
+from core.diagnosis.phase_words import turns_phase_in_words
 from core.diagnosis.verdict import Diagnosis
 from core.diagnosis.verdict import Verdict as DiagnosisVerdict
-from core.machines.parameters import Motor
 from core.rotor.finding import RotorState
 
 REFUSED: Final = 8.0
 """Evidence of a check of the quality gate that failed [nats]: it names what is wrong, not how surely."""
+MEASURED_UNBALANCE: Final = 0.002
+"""Standard deviation of V2/V1 by the voltage channels (complex magnitude)."""
+BALANCED, UNBALANCED = 0.007, 0.028
+"""V2/V1 of usual supplies, rms, and of unbalanced ones."""
 CHECKS: Final = MappingProxyType(
     {
         "current polarity": Cause.CURRENT_CHANNEL,
@@ -27,6 +29,7 @@ CHECKS: Final = MappingProxyType(
         "voltage polarity": Cause.VOLTAGE_CHANNEL,
         "voltage ratio": Cause.VOLTAGE_CHANNEL,
         "voltage unbalance": Cause.VOLTAGE_CHANNEL,
+        "connection": Cause.PARAMETERS,
         "identifiability": Cause.PARAMETERS,
         "computability": Cause.PARAMETERS,
     }
@@ -35,47 +38,32 @@ CHECKS: Final = MappingProxyType(
 ONE_RECORD: Final = "one record does not tell what the load was before"
 
 
-def classify_record(examined: Examined, motor: Motor) -> Classification:
+def classify_record(examined: Examined) -> Classification:
     """Weigh the causes by all that one record shows.
 
     Parameters
     ----------
     examined : Examined
         What was examined in the record.
-    motor : Motor
-        The motor, with tolerances and the class of its sensors.
 
     Returns
     -------
     Classification
         The answer.
     """
-    return classify(evidence_of(examined, motor))
+    return classify(evidence_of(examined))
 
 
-def evidence_of(examined: Examined, motor: Motor) -> Evidence:
-    """Return the evidence of one record.
-
-    Parameters
-    ----------
-    examined : Examined
-        What was examined in the record.
-    motor : Motor
-        The motor.
-
-    Returns
-    -------
-    Evidence
-        Its blocks, and why nothing is known of the other causes.
-    """
+def evidence_of(examined: Examined) -> Evidence:
+    """Return the evidence of one record."""
     rotor, eccentricity, pulsation = examined.rotor, examined.eccentricity, examined.pulsation
     blocks: list[Block | None] = [
         rotor_block(rotor.severity_dB, rotor.severity_dB_ci95),
         eccentricity_block(eccentricity),
         pulsation_block(rotor, eccentricity, pulsation),
     ]
-    stator, why = _of_phasors(examined, motor)
-    known = tuple(block for block in (*blocks, stator) if block is not None)
+    stator, why = _of_phasors(examined.diagnosis)
+    known = tuple(block for block in (*blocks, stator, _supply(examined)) if block is not None)
     told = frozenset().union(*(block.causes for block in known)) if known else frozenset()
     reasons = {
         Cause.ROTOR: _first(rotor.reasons),
@@ -84,21 +72,36 @@ def evidence_of(examined: Examined, motor: Motor) -> Evidence:
         Cause.LOAD: ONE_RECORD,
     }
     untold = {cause: reasons.get(cause, why) for cause in PRIORS if cause not in told}
-    return Evidence(known, untold, _verdicts(examined))
+    return Evidence(known, untold, _verdicts(examined), OF_ONE_ASYMMETRY)
 
 
-def _of_phasors(examined: Examined, motor: Motor) -> tuple[Block | None, str]:
-    """Return the evidence of phasors or of the quality gate; or why there is none."""
-    diagnosis = examined.diagnosis
+def _of_phasors(diagnosis: Diagnosis) -> tuple[Block | None, str]:
+    """Return the evidence of the stator or of the quality gate; or why there is none."""
     refused = _refused(diagnosis)
     if refused is not None:
         return refused, "the quality gate refused the record"
-    if examined.observation is None:
-        return None, _why_no_phasors(diagnosis)
-    try:
-        return asymmetry_block(examined.observation, motor), ""
-    except ObservationError as error:
-        return None, str(error)
+    if diagnosis.currents_only:
+        return None, "without voltages a fault, a channel and the supply look alike"
+    if not diagnosis.hypotheses:
+        return None, "the quality gate refused the record"
+    ratios = {one.cause: one.log_likelihood_ratio for one in diagnosis.hypotheses}
+    figures = {one.cause: one.figure for one in diagnosis.hypotheses}
+    causes = frozenset(ratios) - {Cause.HEALTHY}
+    likelihood = {frozenset({one}): ratios[one] for one in causes}
+    return Block(causes, likelihood, {one: figures[one] for one in causes}), ""
+
+
+def _supply(examined: Examined) -> Block | None:
+    """Return the evidence of an unbalanced supply: how far V2/V1 is beyond that of usual ones."""
+    indicators = examined.diagnosis.indicators
+    if indicators is None or examined.diagnosis.currents_only:
+        return None
+    unbalance = indicators.voltage_unbalance
+    return only(
+        Cause.SUPPLY,
+        log_ratio(unbalance, MEASURED_UNBALANCE, BALANCED, (UNBALANCED,)),
+        f"V2/V1 is {unbalance:.1%}",
+    )
 
 
 def _refused(diagnosis: Diagnosis) -> Block | None:
@@ -109,21 +112,14 @@ def _refused(diagnosis: Diagnosis) -> Block | None:
     return only(cause, REFUSED, failed.message)
 
 
-def _why_no_phasors(diagnosis: Diagnosis) -> str:
-    if diagnosis.verdict is DiagnosisVerdict.UNDIAGNOSABLE:
-        return "the quality gate refused the record"
-    if diagnosis.currents_only:
-        return "without voltages a fault, a channel and the supply look alike"
-    return "the record tells no time, and no phasors are kept of it"
-
-
 def _verdicts(examined: Examined) -> tuple[Verdict, ...]:
     """Return what the record's own verdicts say for sure."""
     diagnosis, rotor = examined.diagnosis, examined.rotor
     turns, cage = Cause.SHORTED_TURNS, Cause.ROTOR
     found = []
     if diagnosis.verdict is DiagnosisVerdict.FAULT:
-        words = f"fault, shorted turns in phase {diagnosis.phase}"
+        phase = turns_phase_in_words(diagnosis.as_dict())
+        words = f"fault, shorted turns in phase {phase}" if phase else "fault, shorted turns"
         found.append(Verdict(turns, is_there=True, words=words))
     if diagnosis.verdict is DiagnosisVerdict.HEALTHY:
         found.append(Verdict(turns, is_there=False, words="no shorted turns"))

@@ -5,8 +5,7 @@ from dataclasses import dataclass
 from statistics import median
 from typing import Any
 
-from core.classification.causes import Cause, Causes
-from core.classification.evidence import log_sum
+from core.diagnosis.causes import OF_ONE_ASYMMETRY, Cause, Causes
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,14 +18,10 @@ class RecordAnswer:
         Of each cause alone; those that the record tells [nats].
     figures : mapping of Cause to str
         What was measured of each, in words.
-    pairs : mapping of frozenset of Cause to float or None, optional
-        The same of two causes that show in the same figures; None of a record that an earlier version
-        answered, which kept none.
     """
 
     log_likelihood_ratios: Mapping[Cause, float]
     figures: Mapping[Cause, str]
-    pairs: Mapping[Causes, float] | None = None
 
     @classmethod
     def from_dict(cls, document: Mapping[str, object]) -> "RecordAnswer":
@@ -49,16 +44,9 @@ class RecordAnswer:
         """
         likelihoods = _list_of(document["likelihoods"], "likelihoods")
         told = [one for one in likelihoods if one["log_likelihood_ratio"] is not None]
-        pairs = document.get("pairs")
         return cls(
             {Cause(one["cause"]): float(one["log_likelihood_ratio"]) for one in told},
             {Cause(one["cause"]): str(one["figure"]) for one in told},
-            None
-            if pairs is None
-            else {
-                frozenset(map(Cause, one["causes"])): float(one["log_likelihood_ratio"])
-                for one in _list_of(pairs, "pairs")
-            },
         )
 
     def of_both(self, one: Cause, other: Cause) -> float:
@@ -74,8 +62,10 @@ class RecordAnswer:
         float
             Log of the likelihood ratio to none of them [nats]; their sum where they show in other figures.
         """
-        apart = self.log_likelihood_ratios[one] + self.log_likelihood_ratios[other]
-        return apart if self.pairs is None else self.pairs.get(frozenset({one, other}), apart)
+        ratios = self.log_likelihood_ratios
+        if {one, other} <= OF_ONE_ASYMMETRY:
+            return max(ratios[one], ratios[other])
+        return ratios[one] + ratios[other]
 
     def beside(self, cause: Cause, changes: Causes) -> float | None:
         """Return the evidence for a cause where one of some changes is there anyway.
@@ -99,14 +89,11 @@ class RecordAnswer:
         if cause not in ratios:
             return None
         alone = ratios[cause]
-        if self.pairs is None:
-            explained = max((ratios[one] for one in changes & ratios.keys()), default=0.0)
-            return max(alone - max(explained, 0.0), min(alone, 0.0))
-        # A change that does not show in the figures of the cause explains nothing of them.
-        pairs = [frozenset({one, cause}) for one in changes]
-        both = [self.pairs.get(pair, alone) for pair in pairs]
-        without = [sum(ratios[one] for one in pair - {cause} if pair in self.pairs) for pair in pairs]
-        return log_sum(both) - log_sum(without) if pairs else alone
+        if cause not in OF_ONE_ASYMMETRY:
+            return alone
+        rivals = changes & OF_ONE_ASYMMETRY & ratios.keys()
+        explained = max((ratios[one] for one in rivals), default=0.0)
+        return max(alone - max(explained, 0.0), min(alone, 0.0))
 
 
 def _list_of(value: object, field: str) -> list[Mapping[str, Any]]:
@@ -119,39 +106,12 @@ def median_beside(records: Sequence[RecordAnswer], cause: Cause, changes: Causes
     """Return the median of what records tell of a cause beside one of some changes.
 
     Records of one motor share its errors, so that more of them make a figure steadier, but not surer.
-
-    Parameters
-    ----------
-    records : sequence of RecordAnswer
-        Answers of the latest records.
-    cause : Cause
-        The cause.
-    changes : frozenset of Cause
-        Changes of which one is there, if any.
-
-    Returns
-    -------
-    float or None
-        The evidence [nats]; None where no record tells.
     """
     told = [found for one in records if (found := one.beside(cause, changes)) is not None]
     return median(told) if told else None
 
 
 def latest_figure(records: Sequence[RecordAnswer], cause: Cause) -> str:
-    """Return what the latest record that tells of a cause has measured of it.
-
-    Parameters
-    ----------
-    records : sequence of RecordAnswer
-        Answers of the latest records, oldest first.
-    cause : Cause
-        The cause.
-
-    Returns
-    -------
-    str
-        The figure in words; empty where none tells.
-    """
+    """Return what the latest record that tells of a cause has measured of it."""
     telling = [one for one in records if cause in one.log_likelihood_ratios]
     return telling[-1].figures.get(cause, "") if telling else ""

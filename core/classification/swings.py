@@ -4,8 +4,8 @@ from math import log
 from typing import Final
 
 from core.classification.amplitude import log_ratio, ratio
-from core.classification.causes import Cause
 from core.classification.evidence import Block, log_sum, only
+from core.diagnosis.causes import Cause
 from core.rotor.finding import LOAD_OSCILLATION, RotorFinding, RotorState
 from core.rotor.swing_findings import EVEN_GAP, STEADY_LOAD, EccentricityFinding, PulsationFinding
 
@@ -18,18 +18,7 @@ TORQUE_NOISE: Final = 0.002
 
 
 def eccentricity_block(finding: EccentricityFinding) -> Block | None:
-    """Return the evidence of the air gap's permeance.
-
-    Parameters
-    ----------
-    finding : EccentricityFinding
-        What a record tells of the gap.
-
-    Returns
-    -------
-    Block or None
-        The evidence; None where the record cannot tell.
-    """
+    """Return the evidence of the air gap's permeance."""
     value, deviation = finding.permeance_ripple, finding.standard_deviation
     if value is None or deviation is None:
         return None
@@ -43,22 +32,7 @@ def eccentricity_block(finding: EccentricityFinding) -> Block | None:
 def pulsation_block(
     rotor: RotorFinding, eccentricity: EccentricityFinding, pulsation: PulsationFinding
 ) -> Block | None:
-    """Return the evidence of swings of the load: at twice the slip, once a turn, or elsewhere.
-
-    Parameters
-    ----------
-    rotor : RotorFinding
-        What a record tells of the cage, and of the load at twice the slip.
-    eccentricity : EccentricityFinding
-        What it tells of the gap, and of the load once a turn.
-    pulsation : PulsationFinding
-        The strongest swing elsewhere.
-
-    Returns
-    -------
-    Block or None
-        The evidence; None where the record cannot tell.
-    """
+    """Return the evidence of swings of the load: at twice the slip, once a turn, or elsewhere."""
     swings: list[tuple[float, float, str]] = []
     # The rotor's own rule tells a swing of the load from an inertia that is wrong.
     is_of_load = any(reason.startswith(f"{LOAD_OSCILLATION}:") for reason in rotor.reasons)

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Final
 
-from core.classification.causes import Cause, Causes
+from core.diagnosis.causes import Cause, Causes
 
 ANOTHER_LOAD: Final = "a record at another load"
 LEADS: Final = "the resistances of the three phases from the contactor on, measured when the motor is off"
@@ -13,6 +13,7 @@ BUS: Final = "a record of another motor of the bus at the same time"
 CLAMP: Final = "a clamp meter beside the relay's current reading, phase by phase"
 VOLTMETER: Final = "a voltmeter at the relay's voltage terminals, phase by phase"
 SWAP: Final = "two channels swapped: an error goes with its channel, a fault stays in its phase"
+FEEDER: Final = "the currents of capacitors, heaters and lighting behind the relay, with a clamp meter"
 COMMISSION: Final = "a recorded start, to commission the motor from (mcc commission)"
 LONGER: Final = "a record of 10 s or more near rated load"
 
@@ -38,6 +39,11 @@ _PAIRS: Final[Mapping[Causes, tuple[str, ...]]] = MappingProxyType(
             "a record at another voltage or with another unbalance",
         ),
         frozenset({Cause.SHORTED_TURNS, Cause.PARAMETERS}): (COMMISSION, SURGE),
+        frozenset({Cause.SHORTED_TURNS, Cause.BEHIND_RELAY}): (
+            f"{FEEDER}, with the load behind the relay switched off",
+            f"{ANOTHER_LOAD}: what another load draws stays, and I1 and I2 of it are as large",
+            SURGE,
+        ),
         frozenset({Cause.CONNECTION, Cause.CURRENT_CHANNEL}): (CLAMP, SWAP, LEADS),
         frozenset({Cause.CONNECTION, Cause.VOLTAGE_CHANNEL}): (
             f"{ANOTHER_LOAD}: the drop over a joint grows with the current, the error of a voltage channel "
@@ -84,23 +90,14 @@ _ALONE: Final[Mapping[Cause, tuple[str, ...]]] = MappingProxyType(
         Cause.ECCENTRICITY: (LONGER, "the vibration of the bearings"),
         Cause.LOAD: ("what the motor drives: coupling, belt, valves", "further records"),
         Cause.PARAMETERS: (COMMISSION, "the nameplate, and the ratios of the transformers"),
+        Cause.BEHIND_RELAY: (FEEDER, "a record with them switched off"),
+        Cause.ASYMMETRY: (f"{ANOTHER_LOAD}, and further records over time", SURGE, LEADS),
     }
 )
 
 
 def what_tells(one: Causes, other: Causes) -> tuple[str, ...]:
-    """Return the records and tests that tell two explanations apart, the easiest first.
-
-    Parameters
-    ----------
-    one, other : frozenset of Cause
-        Explanations; the empty one is a healthy motor.
-
-    Returns
-    -------
-    tuple of str
-        Records and tests, in words.
-    """
+    """Return the records and tests that tell two explanations apart, the easiest first."""
     only_one, only_other = one - other, other - one
     found: list[str] = []
     for first in sorted(only_one):

@@ -1,20 +1,23 @@
 """Commissioning: a motor's parameters, with intervals, from recordings of its starts (thesis chapter 5).
 
 Each start is searched globally and refined from its best separated points. Then all starts are fitted
-together and the load law is chosen. At the end the unknowns that the records do not identify are fixed and
-named in the result, and the others are fitted once more.
+together; the load's law is chosen, and whether the motor changes from a start to running. At the end the
+unknowns that the records do not identify are fixed and named in the result, and the others are fitted once
+more.
 """
 
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from dataclasses import astuple
 from math import exp, isinf, log
 from time import perf_counter
 
 import numpy as np
 
 from core.commissioning.errors import DivergenceError
-from core.commissioning.fit import Fit, Mask, Records
+from core.commissioning.fit import COARSELY, CONVERGED, Fit, Records, every
 from core.commissioning.identifiability import Unidentifiable, compensating, condition_number, unidentifiable
+from core.commissioning.model_choice import ROUGHLY, choose
 from core.commissioning.plausibility import contradictions, delay_warning
 from core.commissioning.prior import PARAMETERS, Prior, prior_of
 from core.commissioning.result import Commissioning, Estimate, StartFound
@@ -22,8 +25,8 @@ from core.commissioning.search import search
 from core.commissioning.start import Start, thinned
 from core.commissioning.start_detection import start_of
 from core.commissioning.stepped_commissioning import commission_stepped
-from core.commissioning.uncertainty import inherited_covariance, noise_covariance, preference, quantile
-from core.commissioning.unknowns import OF_A_START, Point
+from core.commissioning.uncertainty import inherited_covariance, noise_covariance, quantile
+from core.commissioning.unknowns import LOGARITHMS, OF_A_CHANGE, OF_A_START, USUAL_CHANGE, Point
 from core.machines.base import Array
 from core.machines.candidates import LoadLaw
 from core.machines.motor_file.reader import Plate
@@ -32,10 +35,6 @@ from core.recordings import Recording
 
 STARTING_POINTS = 6
 """Points of the global search from which the refinement begins."""
-COARSELY = 1e-6
-"""Convergence criterion of fits whose result is refined again."""
-LAW_SIGNIFICANCE = 3.0
-"""Standard deviations by which a load law must fit better than the others to be chosen."""
 LIGHT_LOAD = 0.05
 """Load level below which the load law makes no difference."""
 USUAL_RESIDUAL = 0.05
@@ -101,13 +100,14 @@ def commission(
         return stepped
     vector, evaluations = _found(starts, prior, load_law or LoadLaw.CONSTANT, report)
     report(0.7, "choosing the law of the load")
-    law, vector, spent, law_identified = _with_law([thinned(one) for one in starts], prior, vector, load_law)
+    chosen = choose([thinned(one) for one in starts], prior, vector, load_law)
     report(0.8, "refining")
-    records, vector = _switched_on_again(Records(starts, prior, law), vector)
-    near = records.fit(vector, _all(vector), converged=COARSELY)
+    records = Records(starts, prior, chosen.law, changes=chosen.changes)
+    records, vector = _switched_on_again(records, chosen.fit.vector)
+    near = records.fit(vector, every(vector), converged=ROUGHLY if chosen.changes else COARSELY)
     records, vector = _switched_on_again(records, near.vector)
-    spent += near.evaluations
-    whole = records.fit(vector, _all(vector))
+    spent = chosen.evaluations + near.evaluations
+    whole = records.fit(vector, every(vector), converged=COARSELY if chosen.changes else CONVERGED)
     fit, fixed = _fit_identifiable(records, whole)
     report(1.0, "done")
     return _result(
@@ -115,7 +115,7 @@ def commission(
         fit,
         fixed,
         plate,
-        law_identified=law_identified,
+        law_identified=chosen.law_identified,
         condition=condition_number(whole),
         evaluations=evaluations + spent + records.evaluations,
         seconds=perf_counter() - begun,
@@ -134,7 +134,7 @@ def _found(starts: list[Start], prior: Prior, law: LoadLaw, report: Progress) ->
         for number, candidate in enumerate(candidates):
             report((k + 0.3 + 0.6 * number / len(candidates)) * share, f"refining {start.source}")
             with suppress(DivergenceError):
-                fits.append(records.fit(candidate, _all(candidate), converged=COARSELY))
+                fits.append(records.fit(candidate, every(candidate), converged=COARSELY))
         if not fits:
             raise DivergenceError(start.source)
         best = min(fits, key=lambda fit: fit.squared_error)
@@ -147,30 +147,6 @@ def _found(starts: list[Start], prior: Prior, law: LoadLaw, report: Progress) ->
     return best_of_all, evaluations + together.evaluations
 
 
-def _with_law(
-    coarse: list[Start], prior: Prior, vector: Array, wanted: LoadLaw | None
-) -> tuple[LoadLaw, Array, int, bool]:
-    """Return the load's law, the vector under it, what choosing took, and whether the records identify it.
-
-    They do not where a law could not be tried, because the model's current grows without bound under it.
-    Raises DivergenceError where none could be.
-    """
-    laws = list(LoadLaw) if wanted is None else [wanted]
-    records = {law: Records(coarse, prior, law) for law in laws}
-    fits: dict[LoadLaw, Fit] = {}
-    for law in laws:
-        with suppress(DivergenceError):
-            fits[law] = records[law].fit(vector, _all(vector), converged=COARSELY)
-    if not fits:
-        raise DivergenceError(", ".join(start.source for start in coarse))
-    best, *others = sorted(fits, key=lambda law: fits[law].squared_error)
-    identified = len(fits) == len(laws) and all(
-        preference(records[best], fits[best], fits[law]) > LAW_SIGNIFICANCE for law in others
-    )
-    chosen = best if identified or LoadLaw.CONSTANT not in fits else LoadLaw.CONSTANT
-    return chosen, fits[chosen].vector, sum(fit.evaluations for fit in fits.values()), identified
-
-
 def _switched_on_again(records: Records, vector: Array) -> tuple[Records, Array]:
     """Return the starts with the switching instants that follow from the fitted fluxes, and their vector."""
     point = records.coordinates.point(vector)
@@ -180,8 +156,9 @@ def _switched_on_again(records: Records, vector: Array) -> tuple[Records, Array]
         again = start.switched_on_again(own[k, 2:], offset) if start.begins_with_the_start else start
         own[k, 2:] = again.switching_flux(np.array([offset]))[0]
         starts.append(again)
-    moved = Records(starts, records.coordinates.prior, records.load_law)
-    return moved, moved.coordinates.vector(Point(point.machine, own))
+    changes = records.coordinates.changes
+    moved = Records(starts, records.coordinates.prior, records.load_law, changes=changes)
+    return moved, moved.coordinates.vector(Point(point.machine, own, point.change))
 
 
 def _fit_identifiable(records: Records, whole: Fit) -> tuple[Fit, list[Unidentifiable]]:
@@ -206,10 +183,12 @@ def _fit_identifiable(records: Records, whole: Fit) -> tuple[Fit, list[Unidentif
 def _expected(name: str, starts: Sequence[Start]) -> float:
     """Return the coordinate at which an unknown is fixed.
 
-    A parameter is fixed at its expected value, the load at none, and the delay at the one seen between the
-    onsets of voltage and current, if there is one.
+    A parameter is fixed at its expected value, a change at the usual one, the load at none, and the delay at
+    the one seen between the onsets of voltage and current, if there is one.
     """
     kind, _, number = name.partition("[")
+    if kind in OF_A_CHANGE:
+        return USUAL_CHANGE[OF_A_CHANGE.index(kind)]
     if kind != "time_offset_s":
         return 0.0
     start = starts[int(number.rstrip("]"))]
@@ -249,9 +228,10 @@ def _result(
         f"{prior.leakage_ratio:g} times the stator's: terminals tell only their sum",
     )
     found = tuple(
-        _start_found(start, fit.residuals[k], point.starts[k], half, k, why)
+        _start_found(start, fit.residuals[k], point.starts[k], half[coordinates.first_of(k) :], k, why)
         for k, start in enumerate(records.starts)
     )
+    deep_bars, saturation = point.change or (None, None)
     motor = Motor(
         plate.name,
         plate.nameplate,
@@ -264,18 +244,41 @@ def _result(
         start_limits=plate.start_limits,
         wound_rotor=plate.wound_rotor,
         thermal=plate.thermal,
+        winding=plate.winding,
+        deep_bars=deep_bars,
+        leakage_saturation=saturation,
     )
     return Commissioning(
         motor=motor,
         parameters=estimates,
+        change=_change(point, half, why),
         starts=found,
         load_law=records.load_law.name.lower(),
         condition_number=condition,
-        reasons=tuple(_reasons(estimates, found, prior, law_identified=law_identified)),
+        reasons=tuple(
+            _reasons(estimates, found, prior, law_identified=law_identified, changes=coordinates.changes)
+        ),
         warnings=tuple(_warnings(motor, estimates, found, records)),
         evaluations=evaluations,
         compute_seconds=seconds,
     )
+
+
+def _change(point: Point, half: Array, why: dict[str, str]) -> dict[str, Estimate]:
+    """Return by how much the motor changes from a start to running, by name; nothing where it does not."""
+    if point.change is None:
+        return {}
+    bars, saturation = point.change
+    values = (*astuple(bars), *astuple(saturation))
+    found = {}
+    for entry, (name, value) in enumerate(zip(OF_A_CHANGE, values, strict=True), len(PARAMETERS)):
+        reach = float(half[entry])
+        is_logarithm = name in LOGARITHMS
+        interval = (
+            (value * exp(-reach), value * exp(reach)) if is_logarithm else (value - reach, value + reach)
+        )
+        found[name] = Estimate(value, None if name in why else interval, why.get(name))
+    return found
 
 
 def _warnings(
@@ -293,11 +296,10 @@ def _warnings(
 def _start_found(
     start: Start, residual: Array, own: Array, half: Array, number: int, why: dict[str, str]
 ) -> StartFound:
-    first = len(PARAMETERS) + number * len(OF_A_START)
 
     def estimate(offset: int, unit: float) -> Estimate:
         value, reason = float(own[offset]), why.get(f"{OF_A_START[offset]}[{number}]")
-        reach = float(half[first + offset]) * unit
+        reach = float(half[offset]) * unit
         return Estimate(value, None if reason else (value - reach, value + reach), reason)
 
     rms = float(np.sqrt((residual**2).sum() / residual.shape[1]))
@@ -324,7 +326,12 @@ def _why(one: Unidentifiable, prior: Prior) -> str:
 
 
 def _reasons(
-    estimates: dict[str, Estimate], starts: Sequence[StartFound], prior: Prior, *, law_identified: bool
+    estimates: dict[str, Estimate],
+    starts: Sequence[StartFound],
+    prior: Prior,
+    *,
+    law_identified: bool,
+    changes: bool,
 ) -> list[str]:
     reasons = []
     doubt = prior.doubt["stator_resistance_ohm"]
@@ -345,8 +352,8 @@ def _reasons(
                 reasons.append(f"{start.record}: {key}: {one.fixed}")
         if identified and start.residual_share > USUAL_RESIDUAL:
             reasons.append(
-                f"{start.record}: {start.residual_share:.0%} of the current is left unexplained: noise, "
-                "saturated leakages or deep rotor bars; the intervals do not cover a model that is wrong"
+                f"{start.record}: {start.residual_share:.0%} of the current is left unexplained: noise, or a "
+                "load or a supply that is another; the intervals do not cover a model that is wrong"
             )
     loads = [start.load_level for start in starts]
     if identified and not law_identified and any(one.fixed or abs(one.value) > LIGHT_LOAD for one in loads):
@@ -354,13 +361,14 @@ def _reasons(
             "load law: the records do not tell how the load grows with speed; constant torque is assumed, on "
             "which inertia and load level depend"
         )
+    if changes:
+        reasons.append(
+            "the motor changes from a start to running (deep bars, leakage that saturates): the parameters "
+            "are those of running"
+        )
     if not prior.from_file:
         reasons.append("the search began at values typical of the rating: the file has no [parameters]")
     return reasons
-
-
-def _all(vector: Array) -> Mask:
-    return np.ones(vector.size, dtype=np.bool_)
 
 
 def _no_progress(share: float, stage: str) -> None:

@@ -21,6 +21,8 @@ STEP = 1e-3
 changes in jumps, moves a current by 1e-6."""
 CONVERGED = 1e-9
 """Relative gain of a step at which the iteration ends."""
+COARSELY = 1e-6
+"""The same of fits whose result is refined again."""
 MOST_STEPS = 60
 FIRST_DAMPING, LEAST_DAMPING, LAST_DAMPING = 1e-2, 1e-9, 1e5
 DAMPINGS = np.array([1e-2, 1e-1, 1.0, 1e1, 1e2])
@@ -70,13 +72,17 @@ class Records:
         What is expected of the motor before a record is seen.
     load_law : LoadLaw
         How the load torque grows with speed.
+    changes : bool, default False
+        Whether the motor changes from a start to running: deep bars, leakage that saturates.
     """
 
-    def __init__(self, starts: Sequence[Start], prior: Prior, load_law: LoadLaw) -> None:
+    def __init__(
+        self, starts: Sequence[Start], prior: Prior, load_law: LoadLaw, *, changes: bool = False
+    ) -> None:
         self.starts = tuple(starts)
         self.load_law = load_law
-        self.coordinates = Coordinates(prior, self.starts)
-        self._playbacks = [start.playback(load_law) for start in starts]
+        self.coordinates = Coordinates(prior, self.starts, changes)
+        self._playbacks = [start.playback(load_law, changes=changes) for start in starts]
         self.evaluations = 0
 
     def squared_errors(self, vectors: Array) -> Array:
@@ -205,6 +211,22 @@ class Records:
     def _currents(self, vectors: Array, record: int) -> Array:
         self.evaluations += len(vectors)
         return self._playbacks[record].trajectories(self.coordinates.candidates(vectors, record)).current
+
+
+def every(vector: Array) -> Mask:
+    """Return that all coordinates of a vector are fitted.
+
+    Parameters
+    ----------
+    vector : ndarray, shape (entries,)
+        The vector.
+
+    Returns
+    -------
+    ndarray of bool, shape (entries,)
+        True everywhere.
+    """
+    return np.ones(vector.size, dtype=np.bool_)
 
 
 def _products(jacobian: Array) -> Array:

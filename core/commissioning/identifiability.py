@@ -19,7 +19,7 @@ from core.commissioning.uncertainty import (
     inherited_covariance,
     noise_covariance,
 )
-from core.commissioning.unknowns import LOAD_LEVEL, TIME_OFFSET
+from core.commissioning.unknowns import LOAD_LEVEL, OF_A_CHANGE, TIME_OFFSET
 from core.machines.base import Array
 
 WIDEST_SHARE = 0.3
@@ -27,6 +27,8 @@ WIDEST_SHARE = 0.3
 
 It is relative for a parameter of the machine and absolute for the load level.
 """
+WIDEST_CHANGE = 0.6
+"""The same limit for what changes from a start to running."""
 WIDEST_CYCLES = 0.05
 """The same limit for T_d, in cycles of the supply."""
 WIDEST_FLUX = 0.5
@@ -156,6 +158,8 @@ def _limit(name: str) -> float:
     kind = name.partition("[")[0]
     if kind in PARAMETERS or kind == LOAD_LEVEL:
         return WIDEST_SHARE
+    if kind in OF_A_CHANGE:
+        return WIDEST_CHANGE
     return WIDEST_CYCLES if kind == TIME_OFFSET else WIDEST_FLUX
 
 

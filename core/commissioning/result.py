@@ -67,6 +67,9 @@ class Commissioning:
         Nameplate and parameters, ready to be written.
     parameters : dict of str to Estimate
         Estimates by the names of MachineParameters.
+    change : dict of str to Estimate
+        By how much the motor changes from a start to running: entries of `deep_bars.DeepBars` and of
+        `deep_bars.LeakageSaturation`, whose share is called saturating_share. Empty where it does not.
     starts : tuple of StartFound
         What was found of each start.
     load_law : str
@@ -85,6 +88,7 @@ class Commissioning:
 
     motor: Motor
     parameters: dict[str, Estimate]
+    change: dict[str, Estimate]
     starts: tuple[StartFound, ...]
     load_law: str
     condition_number: float
@@ -120,6 +124,7 @@ class Commissioning:
         return {
             "identifiable": self.identifiable,
             "parameters": {name: _estimate(one) for name, one in self.parameters.items()},
+            "change": {name: _estimate(one) for name, one in self.change.items()},
             "fixed": list(self.fixed),
             "load_law": self.load_law,
             "records": [

@@ -8,6 +8,7 @@ import numpy as np
 from core.machines.air_gap import AirGap, air_gap
 from core.machines.base import Array
 from core.machines.candidates import LoadLaw
+from core.machines.deep_bar_starts import DeepBarStartPlayback
 from core.machines.parameters import Connection, MachineParameters, Nameplate
 from core.machines.starting import StartPlayback
 from core.machines.supply import Supply, supply
@@ -18,6 +19,8 @@ FULL_OFFSET_CYCLES = 0.5
 """Range in which T_d is searched either way where only the phase of the current determines it."""
 KNOWN_OFFSET_CYCLES = 0.1
 """Range either way about the delay between the onsets of voltage and current, where it is seen."""
+EFFICIENCY_POWER_FACTOR = 0.75
+"""Their usual product at rated power."""
 SEARCH_SAMPLES_A_CYCLE = 80
 """Samples a cycle of a thinned start."""
 
@@ -143,20 +146,29 @@ class Start:
             machine=machine,
         )
 
-    def playback(self, load_law: LoadLaw) -> StartPlayback:
+    @property
+    def rated_winding_current_A(self) -> float:
+        """About the current of a winding at rated power, rms [A]."""
+        plate = self.nameplate
+        return plate.rated_power_W / (3.0 * plate.winding_voltage_V * EFFICIENCY_POWER_FACTOR)
+
+    def playback(self, load_law: LoadLaw, *, changes: bool = False) -> StartPlayback:
         """Return the start's voltages, for any machine.
 
         Parameters
         ----------
         load_law : LoadLaw
             How the load torque grows with speed.
+        changes : bool, default False
+            Whether the machines change from a start to running: deep bars, leakage that saturates.
 
         Returns
         -------
         StartPlayback
             The voltages to be played through machines.
         """
-        return StartPlayback(self.nameplate, self.supply, self.first_column, self.compared, load_law)
+        kind = DeepBarStartPlayback if changes else StartPlayback
+        return kind(self.nameplate, self.supply, self.first_column, self.compared, load_law)
 
     def switching_flux(self, time_offset_s: Array) -> Array:
         """Return the flux that the voltage left between the switching and the models' first column.

@@ -21,7 +21,7 @@ from core.machines.supply import supply
 from core.machines.winding_frame import to_winding_frame
 from core.quality import FREQUENCY_TOLERANCE, LOWEST_VOLTAGE, rated_current_A, sampled_well
 from core.quality.operation import Course, course_of
-from core.quality.ratios import current_advice, voltage_advice
+from core.quality.ratios import appended, current_advice, voltage_advice
 from core.quantity_text import plain, with_unit
 from core.recordings import Channel, Recording
 from core.signals.clarke import clarke
@@ -135,6 +135,7 @@ def start_of(
         line_voltages=channels.line_voltages,
         voltage_ratio=transformers.voltage_ratio,
         current_ratio=transformers.current_ratio,
+        inside_delta=transformers.inside_delta,
     )
     source, rate = recording.source, measured.sample_rate_hz
     if measured.voltage_ab is None:
@@ -248,7 +249,7 @@ def _onset(
             "start",
             expected=f"an inrush of at least {least:g} times the rated current",
             found=f"{inrush:.2f} times: no start, a start through a drive, or currents scaled wrongly: check "
-            f"the current transformers' ratio and rated_power_W; {advice}",
+            f"the current transformers' ratio and rated_power_W{appended(advice)}",
         )
     if inrush > HIGHEST_INRUSH:
         raise CommissioningError(
@@ -274,7 +275,7 @@ def _supply_of(
     live_ab: Array, rate: float, nameplate: Nameplate, channels: tuple[Channel, ...], source: str
 ) -> tuple[float, PhaseSequence]:
     try:
-        frequency = fundamental_frequency(live_ab, rate)
+        frequency = fundamental_frequency(live_ab, rate, search_hz=nameplate.frequency_range_Hz)
     except SignalError as error:
         raise CommissioningError(
             source, "voltages", expected="a supply of one frequency", found=str(error)

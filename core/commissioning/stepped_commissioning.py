@@ -59,6 +59,7 @@ def commission_stepped(starts: Sequence[Start], plate: Plate, begun: float) -> C
     return Commissioning(
         motor=_with_inertia(plate, inertia),
         parameters=estimates,
+        change={},
         starts=tuple(
             _start_found(start, one, motor, float(half[1]))
             for start, one, half in zip(starts, stepped, halves, strict=True)

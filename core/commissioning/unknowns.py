@@ -1,17 +1,20 @@
 """What is estimated: the motor's parameters, shared by all its records, and each start's own quantities.
 
 A fit works on coordinates of order one: the logarithm of a parameter, the load level, T_d in cycles, the
-switching flux over the rated one.
+switching flux over the rated one. Of a motor that changes from a start to running, there are five more: by
+how much resistance and leakage of the rotor do, and share, knee and sharpness of the leakage that saturates.
 """
 
 from dataclasses import dataclass, replace
-from math import log
+from math import exp, log
 
 import numpy as np
 
 from core.commissioning.prior import PARAMETERS, Prior
 from core.commissioning.start import Start
 from core.machines.base import Array
+from core.machines.deep_bar_starts import DeepBarCandidates
+from core.machines.deep_bars import USUAL_SHARPNESS, DeepBars, LeakageSaturation
 from core.machines.parameters import MachineParameters
 from core.machines.starting import StartCandidates
 
@@ -19,6 +22,19 @@ LOAD_LEVEL, TIME_OFFSET = "load_level", "time_offset_s"
 SWITCHING_FLUX = ("switching_flux_alpha_Vs", "switching_flux_beta_Vs")
 OF_A_START = (LOAD_LEVEL, TIME_OFFSET, *SWITCHING_FLUX)
 """Each record's own."""
+KNEE_SHARPNESS = "knee_sharpness"
+OF_A_CHANGE = ("resistance_ratio", "leakage_share", "saturating_share", "knee_current_A", KNEE_SHARPNESS)
+"""Of a motor that changes from a start to running."""
+LOGARITHMS = ("resistance_ratio", "knee_current_A", KNEE_SHARPNESS)
+"""Those whose coordinate is the logarithm."""
+USUAL_CHANGE = (log(1.6), 0.8, 0.15, 0.0, log(USUAL_SHARPNESS))
+"""What they are taken for where no record tells them."""
+LOWEST_CHANGE = (log(1.03), 0.1, 0.0, -1.0, log(1.2))
+HIGHEST_CHANGE = (log(12.0), 0.97, 0.8, log(4.0), log(8.0))
+DOUBT_OF_CHANGE = (0.3, 0.15, 0.1, 0.4, 0.4)
+"""Standard deviations of what is taken for them."""
+KNEE_OVER_RATED = 2.0
+"""Usual current at which leakage begins to saturate, over the rated one."""
 
 LOWEST_LOAD, HIGHEST_LOAD = -0.2, 2.0
 FARTHEST = log(30.0)
@@ -40,13 +56,16 @@ class Point:
         The shared parameters.
     starts : ndarray, shape (records, 4)
         LL, T_d [s] and the flux [V s] of each record.
+    change : tuple of DeepBars and LeakageSaturation, or None, optional
+        How it changes from a start to running.
     """
 
     machine: MachineParameters
     starts: Array
+    change: tuple[DeepBars, LeakageSaturation] | None = None
 
     def candidates(self, record: int) -> StartCandidates:
-        """Return a batch of one for a record.
+        """Return a batch of one for a record, of the machine as it runs.
 
         Parameters
         ----------
@@ -75,7 +94,7 @@ class Point:
 
 @dataclass(frozen=True, slots=True)
 class Coordinates:
-    """The map between points and vectors of order one: five parameters, then four for each record.
+    """The map between points and vectors of order one: the motor's parameters, then four for each record.
 
     Parameters
     ----------
@@ -83,16 +102,29 @@ class Coordinates:
         What is expected of the motor before a record is seen.
     starts : tuple of Start
         The starts.
+    changes : bool, default False
+        Whether the motor changes from a start to running.
     """
 
     prior: Prior
     starts: tuple[Start, ...]
+    changes: bool = False
+
+    @property
+    def shared(self) -> tuple[str, ...]:
+        """Names of the entries that all records share."""
+        return (*PARAMETERS, *OF_A_CHANGE) if self.changes else PARAMETERS
+
+    @property
+    def usual_knee_A(self) -> float:
+        """Current at which the leakage of such a motor usually begins to saturate, rms of a winding [A]."""
+        return KNEE_OVER_RATED * self.starts[0].rated_winding_current_A
 
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the vector's entries; those of a record carry its number, from 0."""
         own = (f"{name}[{k}]" for k in range(len(self.starts)) for name in OF_A_START)
-        return (*PARAMETERS, *own)
+        return (*self.shared, *own)
 
     def of_record(self, record: int) -> list[int]:
         """Return the entries that one record's currents depend on.
@@ -107,8 +139,41 @@ class Coordinates:
         list of int
             Indices of the entries.
         """
-        first = len(PARAMETERS) + record * len(OF_A_START)
-        return [*range(len(PARAMETERS)), *range(first, first + len(OF_A_START))]
+        first = self.first_of(record)
+        return [*range(len(self.shared)), *range(first, first + len(OF_A_START))]
+
+    def first_of(self, record: int) -> int:
+        """Return the index of a record's first own entry.
+
+        Parameters
+        ----------
+        record : int
+            Number of the record, from 0.
+
+        Returns
+        -------
+        int
+            Its index.
+        """
+        return len(self.shared) + record * len(OF_A_START)
+
+    def changing(self, vector: Array, change: Array) -> Array:
+        """Return the vector of a motor that changes, from that of one which does not.
+
+        Parameters
+        ----------
+        vector : ndarray
+            Coordinates without a change.
+        change : ndarray, shape (5,)
+            Coordinates of the change.
+
+        Returns
+        -------
+        ndarray
+            Coordinates with both.
+        """
+        count = len(PARAMETERS)
+        return np.concatenate([vector[:count], change, vector[count:]])
 
     def vector(self, point: Point) -> Array:
         """Return the coordinates of a point.
@@ -126,6 +191,11 @@ class Coordinates:
         shared = [
             log(getattr(point.machine, name) / getattr(self.prior.expected, name)) for name in PARAMETERS
         ]
+        if point.change is not None:
+            bars, saturation = point.change
+            knee = log(saturation.knee_current_A / self.usual_knee_A)
+            shared += [log(bars.resistance_ratio), bars.leakage_share]
+            shared += [saturation.share, knee, log(saturation.knee_sharpness)]
         own = point.starts / np.array([self._units(start) for start in self.starts])
         return np.concatenate([shared, own.reshape(-1)])
 
@@ -143,7 +213,7 @@ class Coordinates:
             The point.
         """
         count = len(PARAMETERS)
-        own = vector[count:].reshape(len(self.starts), len(OF_A_START))
+        own = vector[len(self.shared) :].reshape(len(self.starts), len(OF_A_START))
         units = np.array([self._units(start) for start in self.starts])
         values = dict(zip(PARAMETERS, np.exp(vector[:count]).tolist(), strict=True))
         expected = self.prior.expected
@@ -152,7 +222,12 @@ class Coordinates:
             **{name: getattr(expected, name) * factor for name, factor in values.items()},
             rotor_leakage_H=expected.rotor_leakage_H * values["stator_leakage_H"],
         )
-        return Point(machine, own * units)
+        change = None
+        if self.changes:
+            ratio, share, saturating, knee, sharpness = vector[count : len(self.shared)].tolist()
+            saturation = LeakageSaturation(saturating, self.usual_knee_A * exp(knee), exp(sharpness))
+            change = DeepBars(exp(ratio), share), saturation
+        return Point(machine, own * units, change)
 
     def candidates(self, vectors: Array, record: int) -> StartCandidates:
         """Return a batch for one record.
@@ -171,14 +246,22 @@ class Coordinates:
         """
         expected, count = self.prior.expected, len(PARAMETERS)
         shared = {name: getattr(expected, name) * np.exp(vectors[:, k]) for k, name in enumerate(PARAMETERS)}
-        first = count + record * len(OF_A_START)
+        first = self.first_of(record)
         own = vectors[:, first : first + len(OF_A_START)] * self._units(self.starts[record])
-        return StartCandidates(
+        shared["rotor_leakage_H"] = shared["stator_leakage_H"] * self.prior.leakage_ratio
+        shared["load_level"] = np.ascontiguousarray(own[:, 0])
+        shared["time_offset_s"] = np.ascontiguousarray(own[:, 1])
+        shared["switching_flux_Vs"] = np.ascontiguousarray(own[:, 2:])
+        if not self.changes:
+            return StartCandidates(**shared)
+        ratio, share, saturating, knee, sharpness = vectors[:, count : len(self.shared)].T
+        return DeepBarCandidates(
             **shared,
-            rotor_leakage_H=shared["stator_leakage_H"] * self.prior.leakage_ratio,
-            load_level=np.ascontiguousarray(own[:, 0]),
-            time_offset_s=np.ascontiguousarray(own[:, 1]),
-            switching_flux_Vs=np.ascontiguousarray(own[:, 2:]),
+            resistance_ratio=np.exp(ratio),
+            leakage_share=share,
+            saturating_share=saturating,
+            knee_current_A=self.usual_knee_A * np.exp(knee),
+            knee_sharpness=np.exp(sharpness),
         )
 
     def bounds(self) -> tuple[Array, Array]:
@@ -192,6 +275,8 @@ class Coordinates:
             Upper bounds, shape (entries,).
         """
         lower, upper = [-FARTHEST] * len(PARAMETERS), [FARTHEST] * len(PARAMETERS)
+        if self.changes:
+            lower, upper = [*lower, *LOWEST_CHANGE], [*upper, *HIGHEST_CHANGE]
         for start in self.starts:
             earliest, latest = (offset / start.cycle_s for offset in start.offset_range_s)
             lower += [LOWEST_LOAD, earliest, -HIGHEST_FLUX, -HIGHEST_FLUX]
@@ -207,6 +292,8 @@ class Coordinates:
             Standard deviations.
         """
         shared = [self.prior.doubt[name] for name in PARAMETERS]
+        if self.changes:
+            shared += DOUBT_OF_CHANGE
         return np.array(shared + [DOUBT_OF_LOAD, DOUBT_OF_OFFSET, 0.0, 0.0] * len(self.starts))
 
     @staticmethod

@@ -5,11 +5,14 @@ from dataclasses import dataclass, replace
 from typing import Final, Literal
 
 from core.condition.kinds import Kind
+from core.diagnosis.phase_words import NAMED_PHASE
 from core.machines.winding_frame import Winding
 from core.units import NANOSECONDS_PER_DAY
 
 Phase = Literal["a", "b", "c"]
 PHASES: Final[tuple[Phase, Phase, Phase]] = ("a", "b", "c")
+Phases = tuple[float, float, float]
+"""Probability of each phase."""
 NORMAL_95: Final = 1.96
 
 STALE_AFTER_NS: Final = 7 * NANOSECONDS_PER_DAY
@@ -26,21 +29,26 @@ class Level:
         Level and its standard deviation, a fraction of the phase turns.
     winding : {0, 1, 2}
         Terminal winding of the fault.
-    path_ratio : float
-        Resistance of the path over that of the shorted turns.
     interval : tuple of float or None, optional
-        95 % interval where it is not the normal one, because the path may be one or another.
+        95 % interval where it is not the normal one, because axis and leakage may be one or another.
+    phases : tuple of float or None, optional
+        Probability of each phase at the terminals; None where no phase can be told.
+    axis_deg : float or None, optional
+        Electrical degrees of the coils' axis from that of their phase; None where it is not known.
     """
 
     value: float
     deviation: float
     winding: Winding
-    path_ratio: float
     interval: tuple[float, float] | None = None
+    phases: Phases | None = None
+    axis_deg: float | None = None
 
     @property
-    def phase(self) -> Phase:
-        """Phase of the fault at the terminals: "a", "b", "c"."""
+    def phase(self) -> Phase | None:
+        """Phase of the fault at the terminals: "a", "b", "c"; None where it is not sure."""
+        if self.phases is None or self.phases[self.winding] < NAMED_PHASE:
+            return None
         return PHASES[self.winding]
 
     @property
@@ -105,13 +113,13 @@ class Declared:
         Fault level in all, a fraction of the phase turns.
     ci95 : tuple of float
         Its 95 % interval.
-    phase : {"a", "b", "c"}
-        Phase at the terminals.
+    phase : {"a", "b", "c"} or None
+        Phase at the terminals; None where it was not sure.
     """
 
     level: float
     ci95: tuple[float, float]
-    phase: Phase
+    phase: Phase | None
 
 
 @dataclass(frozen=True, slots=True)

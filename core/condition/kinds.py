@@ -15,7 +15,7 @@ class State(StrEnum):
 
 
 class Kind(StrEnum):
-    """What has changed, or stands out from the first record on."""
+    """What is the matter with a motor: what has changed, or stands out from the first record on."""
 
     NONE = "none"
     SHORTED_TURNS = "shorted-turns"
@@ -27,11 +27,29 @@ class Kind(StrEnum):
     PARAMETERS = "parameters"
     """The motor's negative-sequence impedance is another than it was: other parameters, or another motor."""
     ROTOR = "rotor"
+    STARTS = "starts"
+    THERMAL = "thermal"
+    """Windings that are hotter than their load explains."""
+    AIR_GAP = "air-gap"
+    ASYMMETRY = "asymmetry"
+    """An asymmetry of unknown cause, of the motor or its channels."""
+    OTHER_LOAD = "other-load"
+    """What hangs behind the relay's transformers beside the motor: a capacitor, a heater, another motor."""
     UNCLEAR = "unclear"
 
 
+BESIDE_STATOR: Final = frozenset({Kind.STARTS, Kind.THERMAL, Kind.AIR_GAP})
+"""What other parts of a motor have; no condition of a stator names it."""
 OF_IMPEDANCE: Final = frozenset(
-    {Kind.SHORTED_TURNS, Kind.CONNECTION, Kind.VOLTAGE_CHANNEL, Kind.CURRENT_CHANNEL, Kind.UNCLEAR}
+    {
+        Kind.SHORTED_TURNS,
+        Kind.CONNECTION,
+        Kind.VOLTAGE_CHANNEL,
+        Kind.CURRENT_CHANNEL,
+        Kind.ASYMMETRY,
+        Kind.OTHER_LOAD,
+        Kind.UNCLEAR,
+    }
 )
 """What moves the impedance with no parameter of the motor: records that show it do not tell of parameters."""
 

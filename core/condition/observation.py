@@ -1,22 +1,16 @@
 """What one record tells about its motor's condition: 24 numbers, kept for every record."""
 
 from dataclasses import dataclass
-from enum import StrEnum
 from typing import Final
 
 from core.signals.sequence import PhaseSequence
+from core.signals.terminals import VoltageChannels
 from core.units import NANOSECONDS_PER_SECOND
+
+__all__ = ["SAME_SUPPLY_WITHIN_NS", "Observation", "VoltageChannels"]
 
 SAME_SUPPLY_WITHIN_NS: Final = 60 * NANOSECONDS_PER_SECOND
 """Records of a bus that are no further apart than this have the same supply."""
-
-
-class VoltageChannels(StrEnum):
-    """Which voltages a recorder measures; it decides what an error of one channel looks like."""
-
-    PHASE = "phase"
-    THREE_LINES = "three-lines"
-    TWO_LINES = "two-lines"
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,6 +10,8 @@ from core.condition.kinds import Kind, State
 Interval = tuple[float, float]
 
 TURNS_OR_JOINT: Final = frozenset((Kind.SHORTED_TURNS, Kind.CONNECTION))
+MAY_BE_TURNS: Final = frozenset((Kind.SHORTED_TURNS, Kind.ASYMMETRY))
+"""What has a level: an asymmetry of unknown cause may be shorted turns that no model describes."""
 FEW: Final = 0.02
 """A kind with less probability than this is no candidate."""
 STANDING_FAULTS: Final = 0.01
@@ -208,7 +210,7 @@ def level_of(change: Change | None) -> Level | None:
     if change is None or change.until_ns is not None:
         return None
     if change.named:
-        return change.level if Kind.SHORTED_TURNS in change.named else None
+        return change.level if MAY_BE_TURNS & set(change.named) else None
     return change.level if change.probabilities.get(Kind.SHORTED_TURNS, 0.0) >= FEW else None
 
 

@@ -14,11 +14,13 @@ from core.diagnosis.fundamental import Fundamental, fundamental_of
 from core.machines.parameters import Motor
 from core.machines.wound_rotor import while_running
 from core.operation import Operation
-from core.quality import examine
-from core.quality.finding import QualityFinding, all_passed, file_warning, finding
+from core.quality import Passed, examine
+from core.quality.finding import QualityFinding, all_passed, file_repair, file_warning, finding
 from core.quality.operation import operation
+from core.quality.stretches import CUT, longest_stretch
 from core.quality.trip_signal import is_tripped
 from core.recordings import Quantity, Recording
+from core.signals.refusals import reasons
 from core.signals.terminals import Terminals, terminals
 
 LONGEST_START_S = 30.0
@@ -91,7 +93,7 @@ def accept(recording: Recording, motor: Motor, *, currents_only: bool = False) -
     RecordingError
         If the recording lacks channels that the motor needs.
     """
-    told = tuple(map(file_warning, recording.warnings))
+    told = (*map(file_repair, recording.repairs), *map(file_warning, recording.warnings))
     try:
         acceptance = _accept(recording, motor, currents_only=currents_only)
     except (np.linalg.LinAlgError, ArithmeticError) as error:
@@ -100,18 +102,7 @@ def accept(recording: Recording, motor: Motor, *, currents_only: bool = False) -
 
 
 def not_computable(what: str) -> QualityFinding:
-    """Return the finding that the motor's equations give no figures.
-
-    Parameters
-    ----------
-    what : str
-        What fails, in words.
-
-    Returns
-    -------
-    QualityFinding
-        The finding.
-    """
+    """Return the finding that the motor's equations give no figures."""
     return finding(
         "computability", 1, 0, "figures", passed=False,
         message=f"the motor's equations give no finite figures ({what}): nameplate and parameters, or the "
@@ -130,6 +121,7 @@ def _accept(recording: Recording, motor: Motor, *, currents_only: bool) -> Accep
         longest_s=LONGEST_RECORD_S,
         voltage_ratio=motor.transformers.voltage_ratio,
         current_ratio=motor.transformers.current_ratio,
+        inside_delta=motor.transformers.inside_delta,
     )
     assumed = measured.voltage_ab is None
     tripped = is_tripped(recording.digitals)
@@ -141,17 +133,36 @@ def _accept(recording: Recording, motor: Motor, *, currents_only: bool) -> Accep
             recording.source,
             "voltages",
             expected="three phase voltages or two line voltages beside the currents",
-            found="none: without them an unbalanced supply cannot be told from a fault",
+            found=f"none: without them an unbalanced supply cannot be told from a fault. "
+            f"{reasons(recording, Quantity.PHASE_VOLTAGE)}",
         )
     quality, passed = examine(measured, motor, tripped=tripped)
     does = _operation(recording, motor, quality, tripped=tripped)
+    if passed is None and quality[-1].name in CUT:
+        quality, measured, passed = _of_stretch(measured, motor, quality, tripped=tripped)
     if passed is None:
         return Acceptance(tuple(quality), assumed, None, does)
     rate, frequency = measured.sample_rate_hz, passed.frequency_hz
     running = while_running(motor)
-    case = case_of(running, measured.current_abc, passed.voltage_ab, rate, frequency, passed.sequence)
+    case = case_of(running, passed.current_abc, passed.voltage_ab, rate, frequency, passed.sequence)
     case = replace(case, voltages_assumed=assumed)
     return Acceptance(tuple(quality), assumed, Accepted(measured, case, fundamental_of(case), used), does)
+
+
+def _of_stretch(
+    measured: Terminals, motor: Motor, quality: list[QualityFinding], *, tripped: bool
+) -> tuple[list[QualityFinding], Terminals, Passed | None]:
+    """Examine the longest steady stretch of a record in which something happens, and tell what."""
+    found = longest_stretch(measured, motor)
+    if found is None:
+        return quality, measured, None
+    if isinstance(found, str):
+        return [*quality[:-1], replace(quality[-1], message=found)], measured, None
+    again, passed = examine(found.terminals, motor, tripped=tripped)
+    if passed is None:
+        event = f"{found.event}; {quality[-1].message}"
+        return [*quality[:-1], replace(quality[-1], message=event)], measured, None
+    return [*again, found.warning], found.terminals, passed
 
 
 def _without_voltages(
@@ -179,6 +190,7 @@ def _operation(
             longest_s=LONGEST_START_S,
             voltage_ratio=motor.transformers.voltage_ratio,
             current_ratio=motor.transformers.current_ratio,
+            inside_delta=motor.transformers.inside_delta,
         )
         if np.isfinite(whole.current_abc).all():
             found += operation(whole, motor, tripped=tripped)

@@ -12,8 +12,9 @@ import numpy as np
 
 from core.diagnosis.case import Case
 from core.diagnosis.errors import DiagnosisError
-from core.diagnosis.hypotheses import Explanation
-from core.diagnosis.tolerance import backward_voltage
+from core.diagnosis.record_errors import HEALTHY
+from core.diagnosis.record_figures import RecordFigures
+from core.diagnosis.stator_evidence import StatorEvidence
 from core.diagnosis.verdict import RELATIVE
 
 FEWEST_RECORDINGS = 3
@@ -32,7 +33,7 @@ class Baseline:
     scatter : float
         Standard deviation of the standing currents [A, peak].
     unbalance_V : complex
-        Mean of the backward-turning voltages they were recorded at [V, peak].
+        Mean of the negative-sequence voltages they were recorded at, seen from V1 [V, peak].
     recordings : int
         Number of recordings.
     remaining : float, optional
@@ -55,6 +56,22 @@ class Baseline:
         """Standard deviation of the mean current [A, peak]."""
         return self.scatter / sqrt(self.recordings)
 
+    def taken_off_figures(self, figures: RecordFigures) -> RecordFigures:
+        """Subtract the standing asymmetry from the figures of a record.
+
+        Parameters
+        ----------
+        figures : RecordFigures
+            The record's figures.
+
+        Returns
+        -------
+        RecordFigures
+            The figures without it.
+        """
+        own_S = self.current.conjugate() / figures.positive_voltage_V
+        return replace(figures, negative_current_S=figures.negative_current_S - own_S)
+
     def taken_off(self, case: Case) -> Case:
         """Subtract the standing asymmetry from the currents of a record.
 
@@ -74,46 +91,20 @@ class Baseline:
         return replace(case, current_ab=case.current_ab - np.stack([backward.real, backward.imag]))
 
 
-def standing(explanation: Explanation) -> tuple[complex, complex]:
+def standing(evidence: StatorEvidence) -> tuple[complex, complex]:
     """Return the standing current and the backward-turning voltage of a healthy record.
 
     Both are seen from the forward-turning voltage.
-
-    Parameters
-    ----------
-    explanation : Explanation
-        The hypothesis that explains the currents best.
-
-    Returns
-    -------
-    current : complex
-        Backward-turning winding current that the healthy machine leaves [A, peak].
-    voltage : complex
-        Backward-turning voltage [V, peak].
     """
-    voltage = explanation.record.voltage
-    direction = voltage.forward / abs(voltage.forward)
-    return explanation.healthy.left * direction, backward_voltage(voltage.forward, voltage.backward)
+    figures, point = evidence.errors.figures, evidence.point
+    left = evidence.errors.residual(HEALTHY, point.slip, point.offset_s)
+    current_S = complex(left[2], -left[3]) / evidence.errors.negative_scale
+    volts = figures.positive_voltage_V
+    return current_S * volts, figures.negative_voltage * volts
 
 
 def baseline_of(seen: Iterable[tuple[complex, complex]]) -> Baseline:
-    """Average what `standing` tells of healthy recordings.
-
-    Parameters
-    ----------
-    seen : iterable of tuple of complex
-        Current and voltage of each recording.
-
-    Returns
-    -------
-    Baseline
-        The baseline.
-
-    Raises
-    ------
-    DiagnosisError
-        If there are fewer than three, which tell nothing of scatter.
-    """
+    """Average what `standing` tells of healthy recordings."""
     currents, voltages = np.array(list(seen)).reshape(-1, 2).T
     if currents.size < FEWEST_RECORDINGS:
         raise DiagnosisError(

@@ -71,33 +71,11 @@ class Case:
         return self.window.last - self.window.compare_from
 
     def terminal_winding(self, winding: int) -> Winding:
-        """Return the number under which the terminals know a winding.
-
-        Parameters
-        ----------
-        winding : int
-            0, 1 or 2 in the winding frame.
-
-        Returns
-        -------
-        Winding
-            0, 1 or 2 for the winding on terminal a, b or c.
-        """
+        """Return the number under which the terminals know a winding."""
         return terminal_winding(winding, self.sequence, self.motor.nameplate.connection)
 
     def space_vector(self, x_ab: Array) -> NDArray[np.complex128]:
-        """Return x_alpha + j x_beta over the compared samples.
-
-        Parameters
-        ----------
-        x_ab : ndarray, shape (2, window)
-            Values over the window.
-
-        Returns
-        -------
-        ndarray of complex, shape (compared,)
-            Space vectors, in the same unit.
-        """
+        """Return x_alpha + j x_beta over the compared samples."""
         compared = x_ab[:, self.window.compare_from - self.window.first :]
         return np.asarray(compared[0] + 1j * compared[1], dtype=np.complex128)
 
@@ -110,28 +88,7 @@ def case_of(
     frequency_hz: float,
     sequence: PhaseSequence,
 ) -> Case:
-    """Bring one record into the winding frame.
-
-    Parameters
-    ----------
-    motor : Motor
-        Nameplate, parameters, channel names and limits of the motor.
-    current_abc : ndarray, shape (3, n)
-        Line currents of terminals a, b, c [A].
-    voltage_ab : ndarray, shape (2, n)
-        Voltages on power-invariant Clarke axes [V].
-    sample_rate_hz : float
-        Sampling rate [Hz].
-    frequency_hz : float
-        Supply frequency [Hz].
-    sequence : PhaseSequence
-        Order in which the supply's phases reach their maxima.
-
-    Returns
-    -------
-    Case
-        The record in the winding frame.
-    """
+    """Bring one record into the winding frame."""
     current_ab, voltage_ab = to_winding_frame(
         clarke(current_abc), voltage_ab, sequence, motor.nameplate.connection
     )
@@ -153,16 +110,6 @@ def thinned(case: Case) -> Case:
 
     Voltages and currents pass the same zero-phase filter, and the models are linear at constant speed: what
     is true of the record is true of its filtered copy.
-
-    Parameters
-    ----------
-    case : Case
-        The record in the winding frame.
-
-    Returns
-    -------
-    Case
-        The thinned record.
     """
     factor = int(case.sample_rate_hz / case.frequency_hz / FEWEST_SAMPLES_A_CYCLE)
     if factor < 2:

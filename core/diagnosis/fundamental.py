@@ -71,16 +71,6 @@ class Phasors:
         """Draw the scatter towards equal, independent components as far as few cycles leave it uncertain.
 
         The result is steady enough from record to record to weigh with.
-
-        Parameters
-        ----------
-        cycles : int
-            Number of cycles it is taken from.
-
-        Returns
-        -------
-        ndarray, shape (4, 4)
-            Covariance.
         """
         equal = np.trace(self.scatter) / 4.0 * np.eye(4)
         return np.asarray((cycles * self.scatter + EQUAL_CYCLES * equal) / (cycles + EQUAL_CYCLES))
@@ -109,35 +99,13 @@ class Fundamental:
     weighting: float
 
     def variance(self, by_cycle: ComplexArray) -> float:
-        """Return the variance of a record's value, whatever the colour of its noise.
-
-        Parameters
-        ----------
-        by_cycle : ndarray of complex, shape (cycles,)
-            What single cycles have beside it.
-
-        Returns
-        -------
-        float
-            Variance, both parts together.
-        """
+        """Return the variance of a record's value, whatever the colour of its noise."""
         variance = float(np.var(by_cycle, ddof=1)) / self.cycles
         return self.weighting * variance * _growth(by_cycle)
 
 
 def fundamental_of(case: Case) -> Fundamental:
-    """Find the phasors over the last whole cycles of a record, a second at most.
-
-    Parameters
-    ----------
-    case : Case
-        The record in the winding frame.
-
-    Returns
-    -------
-    Fundamental
-        Phasors of currents and voltages.
-    """
+    """Find the phasors over the last whole cycles of a record, a second at most."""
     window = _window(case)
     samples, cycles, turning = window.turning.size, window.cycles, window.turning
     vectors = np.stack([x[0, -samples:] + 1j * x[1, -samples:] for x in (case.current_ab, case.voltage_ab)])
@@ -156,55 +124,20 @@ def fundamental_of(case: Case) -> Fundamental:
 
 
 def phasors_of(signals: Array, case: Case) -> ComplexArray:
-    """Find the phasors of further signals of a record, at the same instant and over the same cycles.
-
-    Parameters
-    ----------
-    signals : ndarray, shape (m, n)
-        Samples.
-    case : Case
-        The record in the winding frame.
-
-    Returns
-    -------
-    ndarray of complex, shape (m,)
-        Phasors, peak.
-    """
+    """Find the phasors of further signals of a record, at the same instant and over the same cycles."""
     window = _window(case)
     found, _ = _harmonics(signals[:, -window.turning.size :].astype(np.complex128), window)
     return np.asarray(2.0 * found[:, window.highest + 1])
 
 
 def components(phasor: ComplexArray) -> Array:
-    """Split phasors of the Clarke axes into components.
-
-    Parameters
-    ----------
-    phasor : ndarray of complex, shape (2, ...)
-        Phasors of both axes, peak.
-
-    Returns
-    -------
-    ndarray, shape (..., 4)
-        Forwards re, im, backwards re, im.
-    """
+    """Split phasors of the Clarke axes into components."""
     alpha, beta = phasor
     return _components((alpha + 1j * beta) / 2.0, (alpha - 1j * beta).conj() / 2.0)
 
 
 def axis_phasors(values: Array) -> ComplexArray:
-    """Join components to phasors of the Clarke axes.
-
-    Parameters
-    ----------
-    values : ndarray, shape (4,)
-        Forwards re, im, backwards re, im.
-
-    Returns
-    -------
-    ndarray of complex, shape (2,)
-        Phasors of both axes, peak.
-    """
+    """Join components to phasors of the Clarke axes."""
     forward, backward = values[0] + 1j * values[1], values[2] - 1j * values[3]
     return np.array([forward + backward, -1j * (forward - backward)])
 

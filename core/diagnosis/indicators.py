@@ -14,16 +14,6 @@ from core.signals.sequence import PhaseSequence, sequence_phasors
 def indicators(case: Case) -> Indicators:
     """Compute the model-free indicators over the whole record [1]_.
 
-    Parameters
-    ----------
-    case : Case
-        The record in the winding frame.
-
-    Returns
-    -------
-    Indicators
-        The indicators.
-
     References
     ----------
     .. [1] Cardoso, Cruz, Fonseca, IEEE Trans. Energy Convers. 14(3), 1999.

@@ -1,17 +1,14 @@
-"""What is known of offsets and loads before a record is compared.
+"""What is known of offsets, loads, channels and parameters before a record is compared.
 
 A fit compares four real figures, the forward- and the backward-turning current. Level, load, offset and the
-resistance of the path are four unknowns, so the record alone decides between none of them. What decides is
-how far offsets and loads of real plants go, and what sensors and parameters make of the currents
-(`core.diagnosis.propagation`).
+leakage of the turns are more unknowns than the record alone can decide between. What decides is how far
+offsets and loads of real plants go, and what sensors and parameters make of the currents
+(`core.diagnosis.record_errors`).
 """
 
-from dataclasses import dataclass
-from math import log
+from math import hypot
 
-import numpy as np
-
-from core.machines.base import Array
+from core.machines.sensors import SensorClass
 
 OFFSET_S, LONG_OFFSET_S = 100e-6, 1e-3
 """Standard deviations of the offset between a relay's currents and voltages: of nearly all relays, and of
@@ -21,58 +18,34 @@ LONG_OFFSETS = 0.01
 GENERATING = 0.05
 """Load below zero that counts as one standard deviation: a motor drives, but its no-load losses are not
 known exactly."""
+TOGETHER = 0.7
+"""Share of the tolerances' sum that counts: parameters are rarely all wrong in the same direction."""
+SATURATION = 1.0
+"""Relative loss of magnetising inductance per relative rise of voltage or flux above the rated one."""
+IRON, IRON_EXPONENT = 0.12, 9.0
+"""Share of the rated magnetising current that the iron needs, and the exponent of its rise over the flux. The
+magnetising inductance is less by 12 % at 110 % of the rated flux, and greater by 7 % at 90 %; of motors of
+usual sheet steel it is less by 5 to 25 %."""
+SATURATION_SPREAD = 1.0
+"""Standard deviation of what motors lose more or less than that, per relative rise of the flux."""
+MISFIT = 0.04
+"""Misfit of the model of shorted turns, a share of what they change of each current (complex magnitude):
+harmonics of a coil, the speed's ripple."""
+UNKNOWN_ASYMMETRY = 0.02
+"""Standard deviation of an asymmetry of unknown cause, a share of V1 (complex magnitude)."""
 
 
-@dataclass(frozen=True, slots=True)
-class Beliefs:
-    """Squared misfit and rows of least squares of the priors on offset and load, for a batch.
-
-    Parameters
-    ----------
-    misfit : ndarray, shape (candidates,)
-        Minus twice the log of the priors' density over its greatest.
-    offset, load : ndarray, shape (candidates,)
-        Rows of a least-squares fit; their squares have the slope of `misfit`.
-    offset_slope, load_slope : ndarray, shape (candidates,)
-        Slopes of the rows by offset [1/s] and load.
-    """
-
-    misfit: Array
-    offset: Array
-    load: Array
-    offset_slope: Array
-    load_slope: Array
+def saturated_share(relative_flux: float) -> float:
+    """Return the magnetising inductance of usual iron over the rated one, at a flux over the rated one."""
+    needed: float = 1.0 - IRON + IRON * relative_flux ** (IRON_EXPONENT - 1.0)
+    return 1.0 / needed
 
 
-def beliefs(time_offset_s: Array, load_level: Array) -> Beliefs:
-    """Return what the priors make of offsets and loads.
+def gain_deviation(sensors: SensorClass) -> float:
+    """Return the standard deviation of the mean of three currents' ratios over that of three voltages'."""
+    return hypot(sensors.current_gain, sensors.voltage_gain) / 3.0
 
-    The offset's density is Gaussian with tails, (1 - e) N(0, OFFSET_S) + e N(0, LONG_OFFSET_S): a record that
-    does tell a long offset is believed. The load's is flat, and falls below zero.
 
-    Parameters
-    ----------
-    time_offset_s : ndarray, shape (candidates,)
-        Delay of the currents against the voltages [s].
-    load_level : ndarray, shape (candidates,)
-        Load torque over rated torque.
-
-    Returns
-    -------
-    Beliefs
-        Misfit and rows.
-    """
-    usual = (1.0 - LONG_OFFSETS) / OFFSET_S * np.exp(-0.5 * (time_offset_s / OFFSET_S) ** 2)
-    long = LONG_OFFSETS / LONG_OFFSET_S * np.exp(-0.5 * (time_offset_s / LONG_OFFSET_S) ** 2)
-    density = usual + long
-    offset_slope = np.sqrt((usual / OFFSET_S**2 + long / LONG_OFFSET_S**2) / density)
-    load_slope = np.where(load_level < 0.0, 1.0 / GENERATING, 0.0)
-    load = load_slope * load_level
-    greatest = log((1.0 - LONG_OFFSETS) / OFFSET_S + LONG_OFFSETS / LONG_OFFSET_S)
-    return Beliefs(
-        misfit=2.0 * (greatest - np.log(density)) + load**2,
-        offset=offset_slope * time_offset_s,
-        load=load,
-        offset_slope=offset_slope,
-        load_slope=load_slope,
-    )
+def offset_deviation_s(sensors: SensorClass) -> float:
+    """Return the standard deviation of the offset between currents and voltages."""
+    return hypot(OFFSET_S, sensors.current_delay_s / 3.0, sensors.voltage_delay_s / 3.0)

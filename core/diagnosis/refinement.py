@@ -24,8 +24,6 @@ from core.machines.running import SteadyRunning
 
 CONFIDENCE = 0.95
 MOST_ROUNDS = 40
-HIGHEST_PATH_RATIO = 4.0
-"""Highest path ratio. Beyond it the path current is in phase with the voltage, as in other asymmetries."""
 OFFSET_SCALE_S = 100e-6
 """Half width at half maximum of the Cauchy distribution of the offset between a relay's channels."""
 ADMITTANCE_STEP = 1e-4
@@ -66,7 +64,6 @@ class Unknown:
 FAULT_LEVEL = "fault_level"
 LOAD_LEVEL = "load_level"
 TIME_OFFSET = "time_offset_s"
-PATH_RATIO = "path_ratio"
 
 
 def unknown(name: str, case: Case, model: StatorModel) -> Unknown:
@@ -74,27 +71,12 @@ def unknown(name: str, case: Case, model: StatorModel) -> Unknown:
 
     T_d is known modulo one cycle and kept within half a one either way; the quality gate lets none pass that
     is near either end.
-
-    Parameters
-    ----------
-    name : str
-        Name of the quantity.
-    case : Case
-        The record in the winding frame.
-    model : StatorModel
-        Machine model of the fault.
-
-    Returns
-    -------
-    Unknown
-        The unknown.
     """
     cycle = 1.0 / case.frequency_hz
     return {
         FAULT_LEVEL: Unknown(FAULT_LEVEL, 2e-4, model.lowest_level, 0.5),
         LOAD_LEVEL: Unknown(LOAD_LEVEL, 2e-3, -0.2, 2.0),
         TIME_OFFSET: Unknown(TIME_OFFSET, 1e-4 * cycle, -0.5 * cycle, 0.5 * cycle),
-        PATH_RATIO: Unknown(PATH_RATIO, 2e-3, 0.0, HIGHEST_PATH_RATIO),
     }[name]
 
 
@@ -136,33 +118,11 @@ class Fit:
     response: dict[str, Array]
 
     def value(self, name: str) -> float:
-        """Return the fitted value of an unknown.
-
-        Parameters
-        ----------
-        name : str
-            Name of the quantity.
-
-        Returns
-        -------
-        float
-            Its value.
-        """
+        """Return the fitted value of an unknown."""
         return float(getattr(self.candidate, name)[0])
 
     def interval(self, name: str) -> tuple[float, float]:
-        """Return the 95 % confidence interval of an unknown; its bound alone where it ended on one.
-
-        Parameters
-        ----------
-        name : str
-            Name of the quantity.
-
-        Returns
-        -------
-        tuple of float
-            Lower and upper end.
-        """
+        """Return the 95 % confidence interval of an unknown; its bound alone where it ended on one."""
         if name in self.at_bound:
             return self.value(name), self.value(name)
         reach = (
@@ -208,20 +168,7 @@ class Refinement:
         self._whitening = np.linalg.inv(np.linalg.cholesky(weighed))
 
     def fit(self, start: Candidates, names: tuple[str, ...]) -> Fit:
-        """Minimise the misfit from one candidate over the named unknowns, the others held.
-
-        Parameters
-        ----------
-        start : Candidates
-            Candidate to begin at.
-        names : tuple of str
-            Names of the unknowns.
-
-        Returns
-        -------
-        Fit
-            The fit.
-        """
+        """Minimise the misfit from one candidate over the named unknowns, the others held."""
         unknowns = tuple(unknown(name, self._case, self.running.model) for name in names)
         inside = _moved(start, unknowns, np.zeros(len(unknowns)))
         point, rounds, damping = self._linearise(inside, unknowns), 1, 0.0
@@ -243,18 +190,7 @@ class Refinement:
         return self._finished(point, unknowns, evaluations=rounds * (1 + 2 * len(unknowns)))
 
     def admittance(self, candidate: Candidates) -> Array:
-        """Return how the current's components follow the voltage's at a candidate.
-
-        Parameters
-        ----------
-        candidate : Candidates
-            A batch of one hypothesis.
-
-        Returns
-        -------
-        ndarray, shape (4, 4)
-            Difference quotients [A/V].
-        """
+        """Return how the current's components follow the voltage's at a candidate."""
         volts = self.record.voltage.components
         step = ADMITTANCE_STEP * abs(self.record.voltage.forward)
         here = self._modelled(self.running, candidate)[0]
@@ -271,7 +207,9 @@ class Refinement:
             winding=np.repeat(candidate.winding, rows),
             load_level=np.repeat(candidate.load_level, rows),
             time_offset_s=np.repeat(candidate.time_offset_s, rows),
-            path_ratio=np.repeat(candidate.path_ratio, rows),
+            leakage=np.repeat(candidate.leakage, rows),
+            axis_rad=np.repeat(candidate.axis_rad, rows),
+            linkage=np.repeat(candidate.linkage, rows),
         )
         steps = np.empty(len(unknowns))
         for k, one in enumerate(unknowns):

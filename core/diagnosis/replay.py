@@ -6,12 +6,11 @@ import numpy as np
 
 from core.diagnosis.acceptance import accept
 from core.diagnosis.baseline import Baseline
-from core.diagnosis.case import Case
 from core.diagnosis.errors import DiagnosisError
 from core.diagnosis.residual import residual_rms_A
+from core.diagnosis.stator import candidate_of
 from core.diagnosis.verdict import FittedParameters
 from core.machines.base import Array
-from core.machines.candidates import Candidates
 from core.machines.parameters import Motor
 from core.machines.playback import Playback
 from core.machines.stator_models import MODELS
@@ -90,7 +89,7 @@ def replay(
     compared = case if baseline is None else baseline.taken_off(case)
     try:
         playback = Playback(MODELS[model], motor, compared.supply, compared.window)
-        modelled_ab = playback.trajectories(_candidate(compared, fit)).current[0]
+        modelled_ab = playback.trajectories(candidate_of(compared, fit)).current[0]
     except (ValueError, ArithmeticError, np.linalg.LinAlgError) as error:
         raise DiagnosisError(f"the parameters of the diagnosis give no currents: {error}") from error
     if not np.isfinite(modelled_ab).all():
@@ -105,16 +104,4 @@ def replay(
         measured_abc=accepted.terminals.current_abc[:, window],
         modelled_abc=lines,
         residual_rms_A=residual_rms_A(compared, modelled_ab),
-    )
-
-
-def _candidate(case: Case, fit: FittedParameters) -> Candidates:
-    # Exchanging terminals twice gives the first order: the way back is the way there.
-    winding = case.terminal_winding(fit.theta_f)
-    return Candidates(
-        fault_level=np.array([fit.mu_f]),
-        winding=np.array([winding], dtype=np.int64),
-        load_level=np.array([fit.load_level]),
-        time_offset_s=np.array([fit.time_offset_s]),
-        path_ratio=np.array([fit.path_ratio]),
     )

@@ -7,20 +7,7 @@ from core.machines.base import Array
 
 
 def residual_rms_A(case: Case, modelled_ab: Array) -> float:
-    """Return the rms distance of measured and modelled line currents over both Clarke axes.
-
-    Parameters
-    ----------
-    case : Case
-        The record in the winding frame.
-    modelled_ab : ndarray, shape (2, window)
-        Modelled winding currents over the window [A].
-
-    Returns
-    -------
-    float
-        Distance over the compared samples [A].
-    """
+    """Return the rms distance of measured and modelled line currents over both Clarke axes."""
     window = case.window
     residual = case.space_vector(case.current_ab[:, window.first : window.last] - modelled_ab)
     return float(np.sqrt(np.mean(np.abs(residual) ** 2))) * case.line_per_winding_current

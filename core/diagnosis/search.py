@@ -68,49 +68,17 @@ class Starts:
 
 
 def candidates_at(points: Array) -> Candidates:
-    """Make candidates of search points.
-
-    Parameters
-    ----------
-    points : ndarray, shape (m, 4)
-        Search points mu_f, theta_f, T_d, LL.
-
-    Returns
-    -------
-    Candidates
-        The candidates.
-    """
+    """Make candidates of search points."""
     return Candidates(
         fault_level=np.ascontiguousarray(points[:, 0]),
         winding=np.round(points[:, 1]).astype(np.int64),
         load_level=np.ascontiguousarray(points[:, 3]),
         time_offset_s=np.ascontiguousarray(points[:, 2]),
-        path_ratio=np.zeros(len(points)),
     )
 
 
 def search(case: Case, model: StatorModel, method: str) -> Starts:
-    """Run a search method on the thinned record; return its best point for each winding.
-
-    Parameters
-    ----------
-    case : Case
-        The record in the winding frame.
-    model : StatorModel
-        Machine model of the fault.
-    method : str
-        One of METHODS.
-
-    Returns
-    -------
-    Starts
-        Best point of each winding.
-
-    Raises
-    ------
-    DiagnosisError
-        If the method does not exist.
-    """
+    """Run a search method on the thinned record; return its best point for each winding."""
     if method not in METHODS:
         raise DiagnosisError(f"method {method!r} is unknown; known: {', '.join(METHODS)}")
 
@@ -147,18 +115,7 @@ class Objective:
     cycle_s: float
 
     def bounds(self, lowest_winding: float, highest_winding: float) -> tuple[tuple[float, float], ...]:
-        """Return the box that is searched.
-
-        Parameters
-        ----------
-        lowest_winding, highest_winding : float
-            Bounds of theta_f.
-
-        Returns
-        -------
-        tuple of tuple of float
-            Lower and upper bound of each coordinate.
-        """
+        """Return the box that is searched."""
         return (
             (0.0, HIGHEST_FAULT_LEVEL),
             (lowest_winding, highest_winding),

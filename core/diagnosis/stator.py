@@ -1,38 +1,52 @@
-"""Diagnosis of one recording: quality gate, global search, refinement, choice of hypothesis, verdict."""
+"""Diagnosis of one recording: quality gate, evidence over all hypotheses, verdict."""
 
 from collections.abc import Iterable
 from dataclasses import replace
 from functools import partial
+from math import atan2
 from time import perf_counter
+from typing import Final
 
 import numpy as np
 
-from core.diagnosis.acceptance import Acceptance, accept, not_computable
+from core.diagnosis.acceptance import Acceptance, Accepted, accept, not_computable
+from core.diagnosis.arrangement_words import connected, level_ci95, with_arrangement
+from core.diagnosis.arrangements import arrange
 from core.diagnosis.baseline import Baseline, baseline_of, standing
 from core.diagnosis.case import Case
+from core.diagnosis.causes import Cause
 from core.diagnosis.errors import DiagnosisError
+from core.diagnosis.estimates import Estimates, estimates_of, nearest_turns
 from core.diagnosis.fundamental import fundamental_of
-from core.diagnosis.hypotheses import Explanation, explain, is_explained
 from core.diagnosis.indicators import indicators
-from core.diagnosis.judgement import PARAMETERS_DO_NOT_FIT, identified, is_unusual, judge, with_load
-from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
-from core.diagnosis.propagation import Known, deviation, errors_of, of_the_likeliest_winding, widened
-from core.diagnosis.refinement import FAULT_LEVEL, LOAD_LEVEL, PATH_RATIO, TIME_OFFSET, Fit
+from core.diagnosis.judgement import (
+    hypotheses_of,
+    identified,
+    judge,
+    names_phase,
+    phase_probabilities,
+    with_load,
+)
+from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL, Method, Model, resolved
+from core.diagnosis.record_errors import Known
+from core.diagnosis.record_figures import RecordFigures, figures_of
+from core.diagnosis.refinement import FAULT_LEVEL, LOAD_LEVEL, TIME_OFFSET, Fit
 from core.diagnosis.residual import residual_rms_A
-from core.diagnosis.search import METHODS, search
-from core.diagnosis.tolerance import Systematic, systematic
+from core.diagnosis.search import METHODS
+from core.diagnosis.stator_evidence import StatorEvidence, weigh_stator
+from core.diagnosis.thesis_models import searched
 from core.diagnosis.verdict import Diagnosis, FittedParameters, Verdict, not_finite
+from core.machines.candidates import Candidates
 from core.machines.parameters import Motor
 from core.machines.playback import Playback, electrical_to_rpm
-from core.machines.split_winding import SplitWinding
 from core.machines.stator_models import MODELS
 from core.machines.wound_rotor import resistance_ratios
 from core.quality.assumed_supply import SUPPLY_UNBALANCE
-from core.quality.finding import QualityFinding
+from core.quality.finding import QualityFinding, all_passed
 from core.quality.scale import current_scale_advice
 from core.recordings import Recording
 
-SPEED_UNKNOWN = (
+SPEED_UNKNOWN: Final = (
     "the resistance at the slip rings is not known: the stator and the load are told all the same, slip and "
     "speed are not"
 )
@@ -58,7 +72,8 @@ def diagnose(
     motor : Motor
         Nameplate, parameters, channel names and limits of the motor.
     method : str, optional
-        Global search, one of `core.diagnosis.methods.Method`.
+        One of `core.diagnosis.methods.Method`. A global search is the thesis's way: it takes one of its
+        models, and such a model takes a search (`core.diagnosis.methods.resolved`).
     model : str, optional
         Fault model, one of `core.diagnosis.methods.Model`; mu_f is its equivalent level.
     baseline : Baseline or None, optional
@@ -99,7 +114,7 @@ def diagnose_accepted(
     acceptance : Acceptance
         What `accept` says of the record.
     method : str, optional
-        Global search, one of `core.diagnosis.methods.Method`.
+        One of `core.diagnosis.methods.Method`.
     model : str, optional
         Fault model, one of `core.diagnosis.methods.Model`.
     baseline : Baseline or None, optional
@@ -119,6 +134,7 @@ def diagnose_accepted(
     """
     begun = perf_counter() if begun is None else begun
     _check_known(method, model)
+    method, model = resolved(method, model)
     try:
         result = replace(
             _diagnosed(acceptance, method, model, baseline, begun), operation=acceptance.operation
@@ -140,65 +156,61 @@ def _diagnosed(
     quality, assumed, accepted = list(acceptance.quality), acceptance.voltages_assumed, acceptance.accepted
     if accepted is None:
         return _refused(quality, perf_counter() - begun, model, method, currents_only=assumed)
-    case, phasors = accepted.case, accepted.phasors
-    motor = case.motor
-    if baseline is not None:
-        case = baseline.taken_off(case)
-        phasors = fundamental_of(case)
-    playback = Playback(MODELS[model], motor, case.supply, case.window)
-    starts = search(case, playback.model, method)
-    known = _known(baseline, SUPPLY_UNBALANCE if assumed else 0.0)
-    explanation = explain(case, phasors, playback.model, starts, known)
-    advice = partial(current_scale_advice, accepted.terminals, motor)
-    quality.append(identified(explanation, advice))
-    if not quality[-1].passed:
+    case = accepted.case if baseline is None else baseline.taken_off(accepted.case)
+    figures = _figures(accepted, baseline)
+    known = _known(figures, baseline, SUPPLY_UNBALANCE if assumed else 0.0)
+    arranged = arrange(figures, case.motor, known, model)
+    evidence = arranged.evidence
+    estimates = estimates_of(evidence)
+    advice = partial(current_scale_advice, accepted.terminals, case.motor)
+    quality += [connected(arranged), identified(evidence, advice)]
+    if not all_passed(quality):
         return _refused(quality, perf_counter() - begun, model, method, currents_only=assumed)
-    fit = explanation.fit
-    tolerance = systematic(case, playback, fit, known)
-    level_ci95 = _level_interval(case, playback, explanation, tolerance, known)
-    verdict, reasons = judge(case, explanation, tolerance, level_ci95)
-    if assumed and verdict is Verdict.FAULT:
-        verdict = Verdict.WATCH
-    if assumed:
-        reasons.insert(
-            1, "no voltages recorded: a balanced supply is assumed, so this is no better than a hint"
-        )
+    evaluations = evidence.evaluations
+    fit = _fitted(case, evidence, estimates)
+    level, theta_f = estimates.level, fit.theta_f
+    if model != Model.COIL:
+        found = searched(case, fundamental_of(case), MODELS[model], method)
+        evaluations += found.evaluations
+        fit = _refined(case, found.best)
+        level, theta_f = max(0.0, fit.mu_f), fit.theta_f
+    verdict, reasons = judge(case, evidence, estimates, advice)
+    verdict, reasons = with_load(verdict, reasons, estimates.load_ci95, advice)
+    verdict, reasons = with_arrangement(verdict, reasons, arranged, advice)
     if baseline is not None:
         reasons.append(baseline.reason)
-    if resistance_ratios(motor).are_open:
+    if resistance_ratios(case.motor).are_open:
         reasons.append(SPEED_UNKNOWN)
-    explained = is_explained(explanation, tolerance)
-    only_parameters = reasons[0].startswith(PARAMETERS_DO_NOT_FIT)
-    named = verdict is Verdict.FAULT or (verdict is Verdict.WATCH and explained and not only_parameters)
-    # Load and speed are those of the accepted hypothesis; an insignificant level would bias them. They do not
-    # depend on the motor's limit: a level below a high limit is there all the same.
-    faulted = named or (explained and level_ci95[0] > 0.0)
-    # At light load a healthy machine may come nearest with an offset that no relay has.
-    running = fit if faulted or is_unusual(explanation.healthy, case) else explanation.healthy
-    load_ci95 = _load_interval(case, playback, explanation, known, faulted=faulted)
-    verdict, reasons = with_load(verdict, reasons, load_ci95, advice)
+    named = (
+        verdict is not Verdict.HEALTHY
+        and evidence.answer is Cause.SHORTED_TURNS
+        and names_phase(evidence, case)
+    )
+    playback = Playback(MODELS[model], case.motor, case.supply, case.window)
     return Diagnosis(
         verdict=verdict,
-        mu_f=max(0.0, fit.value(FAULT_LEVEL)),
-        mu_f_ci95=_not_below_zero(level_ci95),
-        theta_f=case.terminal_winding(explanation.winding) if named else None,
-        load_level=running.value(LOAD_LEVEL),
-        time_offset_s=running.value(TIME_OFFSET),
-        residual_rms_A=residual_rms_A(case, playback.trajectories(fit.candidate).current[0]),
-        evaluations=starts.evaluations + explanation.evaluations,
+        mu_f=level,
+        mu_f_ci95=level_ci95(estimates.level_ci95, arranged),
+        theta_f=theta_f if named else None,
+        load_level=estimates.load_level,
+        time_offset_s=estimates.offset_s,
+        residual_rms_A=residual_rms_A(case, playback.trajectories(candidate_of(case, fit)).current[0]),
+        evaluations=evaluations,
         compute_seconds=perf_counter() - begun,
         quality=tuple(quality),
         reasons=tuple(reasons),
         model=str(model),
         method=str(method),
-        mu_f_scatter95=_not_below_zero(fit.interval(FAULT_LEVEL)),
-        load_level_ci95=load_ci95,
-        load_level_scatter95=running.interval(LOAD_LEVEL),
-        speed_rpm=_speed_rpm(case, playback, running),
-        detection_limit=tolerance.detection_limit(fit, motor.limits.fault_level),
+        mu_f_scatter95=estimates.level_scatter95,
+        load_level_ci95=estimates.load_ci95,
+        load_level_scatter95=estimates.load_scatter95,
+        speed_rpm=_speed_rpm(case, estimates),
+        detection_limit=estimates.detection_limit,
         indicators=indicators(case),
         currents_only=assumed,
-        fit=_parameters(case, fit),
+        fit=fit,
+        phase_probabilities=phase_probabilities(evidence, case),
+        hypotheses=hypotheses_of(evidence, case),
     )
 
 
@@ -233,10 +245,10 @@ def learn_baseline(recordings: Iterable[Recording], motor: Motor, *, currents_on
         if accepted is None:
             failed = ", ".join(finding.name for finding in acceptance.quality if not finding.passed)
             raise DiagnosisError(f"{recording.source or 'recording'}: not fit for a baseline: {failed}")
-        model = SplitWinding()
         try:
-            starts = search(accepted.case, model, DEFAULT_METHOD)
-            seen.append(standing(explain(accepted.case, accepted.phasors, model, starts)))
+            figures = _figures(accepted, None)
+            known = Known(supply_unbalance=SUPPLY_UNBALANCE if acceptance.voltages_assumed else 0.0)
+            seen.append(standing(weigh_stator(figures, accepted.case.motor, known)))
         except (np.linalg.LinAlgError, ArithmeticError) as error:
             what = not_computable(str(error)).message
             raise DiagnosisError(
@@ -245,69 +257,76 @@ def learn_baseline(recordings: Iterable[Recording], motor: Motor, *, currents_on
     return baseline_of(seen)
 
 
+def candidate_of(case: Case, fit: FittedParameters) -> Candidates:
+    """Return a fitted hypothesis as the machine models take it."""
+    # Exchanging terminals twice gives the first order: the way back is the way there.
+    winding = case.terminal_winding(fit.theta_f)
+    return Candidates(
+        fault_level=np.array([fit.mu_f]),
+        winding=np.array([winding], dtype=np.int64),
+        load_level=np.array([fit.load_level]),
+        time_offset_s=np.array([fit.time_offset_s]),
+        leakage=np.array([fit.leakage]),
+        axis_rad=np.array([fit.axis_rad]),
+        linkage=np.array([fit.linkage]),
+    )
+
+
 def _check_known(method: str, model: str) -> None:
     if model not in MODELS:
         raise DiagnosisError(f"model {model!r} is unknown; known: {', '.join(MODELS)}")
-    if method not in METHODS:
-        raise DiagnosisError(f"method {method!r} is unknown; known: {', '.join(METHODS)}")
+    known = (Method.EVIDENCE, *METHODS)
+    if method not in known:
+        raise DiagnosisError(f"method {method!r} is unknown; known: {', '.join(known)}")
 
 
-def _known(baseline: Baseline | None, supply_unbalance: float) -> Known:
+def _figures(accepted: Accepted, baseline: Baseline | None) -> RecordFigures:
+    figures = figures_of(accepted.terminals, accepted.case, accepted.phasors)
+    return figures if baseline is None else baseline.taken_off_figures(figures)
+
+
+def _known(figures: RecordFigures, baseline: Baseline | None, supply_unbalance: float) -> Known:
     if baseline is None:
         return Known(supply_unbalance=supply_unbalance)
-    return Known(1.0 - baseline.remaining, baseline.unbalance_V, baseline.error_A, supply_unbalance)
+    volts = figures.positive_voltage_V
+    return Known(
+        1.0 - baseline.remaining, baseline.unbalance_V / volts, baseline.error_A / volts, supply_unbalance
+    )
 
 
-def _level_interval(
-    case: Case, playback: Playback, explanation: Explanation, tolerance: Systematic, known: Known
-) -> tuple[float, float]:
-    """95 % interval of the fault level from all causes, below zero too."""
-    fit = explanation.fit
-    errors = errors_of(case, playback.model, explanation.record, fit.candidate, known)
-    at_bound = FAULT_LEVEL in fit.at_bound
-    systematic_level = tolerance.level if at_bound else deviation(fit, FAULT_LEVEL, errors)
-    level = fit.value(FAULT_LEVEL)
-    return of_the_likeliest_winding(level, widened(level, explanation.level_interval, systematic_level))
+def _fitted(case: Case, evidence: StatorEvidence, estimates: Estimates) -> FittedParameters:
+    """Return the shorted turns that come nearest, at the level that is told."""
+    nearest = estimates if estimates.is_faulted else nearest_turns(evidence)
+    turns = nearest.turns
+    return FittedParameters(
+        mu_f=turns.level,
+        theta_f=case.terminal_winding(turns.winding),
+        load_level=nearest.load_level,
+        time_offset_s=nearest.offset_s,
+        leakage=turns.leakage,
+        axis_rad=atan2(turns.ahead.imag, turns.ahead.real),
+        linkage=abs(turns.ahead),
+    )
 
 
-def _load_interval(
-    case: Case, playback: Playback, explanation: Explanation, known: Known, *, faulted: bool
-) -> tuple[float, float]:
-    """95 % interval of the load from all causes.
-
-    Where shorted turns are neither found nor excluded, it holds the loads of both hypotheses.
-    """
-    scatter = [(explanation.fit, explanation.load_interval)]
-    if not faulted:
-        scatter.append((explanation.healthy, explanation.healthy.interval(LOAD_LEVEL)))
-    found = []
-    for fit, interval in scatter:
-        errors = errors_of(case, playback.model, explanation.record, fit.candidate, known)
-        found.append(widened(fit.value(LOAD_LEVEL), interval, deviation(fit, LOAD_LEVEL, errors)))
-    return min(low for low, _ in found), max(high for _, high in found)
-
-
-def _not_below_zero(interval: tuple[float, float]) -> tuple[float, float]:
-    low, high = interval
-    return max(0.0, low), max(0.0, high)
-
-
-def _parameters(case: Case, fit: Fit) -> FittedParameters:
+def _refined(case: Case, fit: Fit) -> FittedParameters:
     return FittedParameters(
         mu_f=fit.value(FAULT_LEVEL),
         theta_f=case.terminal_winding(int(fit.candidate.winding[0])),
         load_level=fit.value(LOAD_LEVEL),
         time_offset_s=fit.value(TIME_OFFSET),
-        path_ratio=fit.value(PATH_RATIO),
+        leakage=float(fit.candidate.leakage[0]),
+        axis_rad=float(fit.candidate.axis_rad[0]),
+        linkage=float(fit.candidate.linkage[0]),
     )
 
 
-def _speed_rpm(case: Case, playback: Playback, fit: Fit) -> float | None:
-    """Speed of the fitted candidate; None where the resistance of the rotor circuit is unknown."""
+def _speed_rpm(case: Case, estimates: Estimates) -> float | None:
+    """Speed of the shaft; None where the resistance of the rotor circuit is unknown."""
     if resistance_ratios(case.motor).are_open:
         return None
-    mean = playback.steady_state(fit.candidate).mean_speed
-    return float(electrical_to_rpm(mean, case.motor.nameplate.pole_pairs)[0])
+    speed = np.array([(1.0 - estimates.slip) * case.supply.angular_frequency])
+    return float(electrical_to_rpm(speed, case.motor.nameplate.pole_pairs)[0])
 
 
 def _refused(

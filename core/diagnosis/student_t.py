@@ -10,18 +10,6 @@ def student_t_quantile(probability: float, degrees_of_freedom: int) -> float:
     It equals `scipy.stats.t.ppf`, which is not used because the import of scipy.stats, and of scipy.special
     alone, takes longer than a whole diagnosis.
 
-    Parameters
-    ----------
-    probability : float
-        Above 0.5 and below 1.
-    degrees_of_freedom : int
-        At least 1.
-
-    Returns
-    -------
-    float
-        The quantile.
-
     References
     ----------
     Abramowitz and Stegun, Handbook of Mathematical Functions, 26.7.3 and 26.7.4.

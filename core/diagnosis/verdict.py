@@ -6,6 +6,7 @@ from enum import StrEnum
 from math import isfinite
 from typing import Literal
 
+from core.diagnosis.causes import Cause
 from core.operation import Operation
 from core.quality.finding import QualityFinding
 
@@ -50,13 +51,7 @@ class Indicators:
     park_axis_angle_deg: float
 
     def as_dict(self) -> dict[str, float]:
-        """Return the figures as JSON takes them.
-
-        Returns
-        -------
-        dict of str to float
-            The figures by name.
-        """
+        """Return the figures as JSON takes them."""
         return {name: getattr(self, name) for name in self.__dataclass_fields__}
 
 
@@ -77,15 +72,23 @@ class FittedParameters:
         Load torque over rated torque.
     time_offset_s : float
         Delay of the currents against the voltages [s].
-    path_ratio : float
-        Resistance of the path that bridges the turns over that of the turns.
+    leakage : float
+        Leakage psi of the shorted turns: 1 where they have it to themselves and nothing but their own
+        resistance in their way.
+    axis_rad : float
+        Angle from the phase's axis to that of the coil, positive as the field turns: in the frame of the
+        windings, which mirrors an a-c-b supply [rad].
+    linkage : float
+        Field that a turn of the coil links, over that of the phase's mean turn.
     """
 
     mu_f: float
     theta_f: Literal[0, 1, 2]
     load_level: float
     time_offset_s: float
-    path_ratio: float
+    leakage: float
+    axis_rad: float
+    linkage: float
 
     def as_dict(self) -> dict[str, float]:
         """Return the parameters as JSON takes them.
@@ -99,6 +102,37 @@ class FittedParameters:
 
 
 @dataclass(frozen=True, slots=True)
+class Hypothesis:
+    """One cause that was weighed.
+
+    Parameters
+    ----------
+    cause : Cause
+        The cause; those of a record exclude one another.
+    probability : float
+        Its probability after the evidence.
+    log_likelihood_ratio : float
+        Log of the likelihood of the record's figures with it to that of a healthy motor [nats].
+    figure : str
+        What was measured of it, in words.
+    """
+
+    cause: Cause
+    probability: float
+    log_likelihood_ratio: float
+    figure: str
+
+    def as_dict(self) -> dict[str, object]:
+        """Return the hypothesis as JSON takes it."""
+        return {
+            "cause": str(self.cause),
+            "probability": self.probability,
+            "log_likelihood_ratio": self.log_likelihood_ratio,
+            "figure": self.figure,
+        }
+
+
+@dataclass(frozen=True, slots=True)
 class Diagnosis:
     """The result for one recording; figures are None where the quality gate refused it.
 
@@ -109,9 +143,10 @@ class Diagnosis:
     mu_f : float or None
         Equivalent fault level, a fraction of the phase turns.
     mu_f_ci95 : tuple of float or None
-        Its 95 % interval from all causes: noise, sensors, parameters, and paths that the record leaves open.
+        Its 95 % interval from all causes: noise, sensors, parameters, and the axis and leakage of the turns.
     theta_f : {0, 1, 2} or None
-        Winding with the fault: 0, 1, 2 for the one on terminals a, b, c; None unless shorted turns are found.
+        Winding with the fault: 0, 1, 2 for the one on terminals a, b, c; None unless shorted turns are found
+        and their phase has a probability of at least 0.95.
     load_level : float or None
         Load torque over rated torque.
     time_offset_s : float or None
@@ -129,7 +164,7 @@ class Diagnosis:
     model : str
         Fault model that was used.
     method : str
-        Search method that was used.
+        Method that was used.
     mu_f_scatter95 : tuple of float or None, optional
         95 % interval of the level from the record's own scatter alone: how well it repeats.
     load_level_ci95 : tuple of float or None, optional
@@ -148,6 +183,11 @@ class Diagnosis:
         What the motor does in the recording; None where that cannot be told.
     fit : FittedParameters or None, optional
         The hypothesis behind `residual_rms_A`.
+    phase_probabilities : tuple of float or None, optional
+        Probability that shorted turns, if there are any, lie in the winding on terminal a, b, c; None of a
+        motor with slip rings, whose records do not tell.
+    hypotheses : tuple of Hypothesis, optional
+        All causes that were weighed, the likeliest first.
     """
 
     verdict: Verdict
@@ -172,10 +212,12 @@ class Diagnosis:
     currents_only: bool = False
     operation: Operation | None = None
     fit: FittedParameters | None = None
+    phase_probabilities: tuple[float, float, float] | None = None
+    hypotheses: tuple[Hypothesis, ...] = ()
 
     @property
     def phase(self) -> Literal["a", "b", "c"] | None:
-        """Phase with the fault: "a", "b", "c"; None unless shorted turns are found."""
+        """Phase with the fault: "a", "b", "c"; None where it is not named."""
         phases: tuple[Literal["a", "b", "c"], ...] = ("a", "b", "c")
         return None if self.theta_f is None else phases[self.theta_f]
 
@@ -211,6 +253,8 @@ class Diagnosis:
             "currents_only": self.currents_only,
             "operation": None if self.operation is None else str(self.operation),
             "fit": None if self.fit is None else self.fit.as_dict(),
+            "phase_probabilities": _listed(self.phase_probabilities),
+            "hypotheses": [one.as_dict() for one in self.hypotheses],
         }
 
 
@@ -263,5 +307,5 @@ def _is_finite(value: float) -> bool:
         return False
 
 
-def _listed(interval: tuple[float, float] | None) -> list[float] | None:
-    return None if interval is None else list(interval)
+def _listed(values: tuple[float, ...] | None) -> list[float] | None:
+    return None if values is None else list(values)

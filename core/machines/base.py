@@ -15,6 +15,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from core.machines.candidates import Candidates
 from core.machines.parameters import Motor
 
 Array = NDArray[np.float64]
@@ -76,27 +77,15 @@ class StatorModel(Protocol):
         """Least fault level to which the equations hold; below zero an estimate is free of bias."""
         ...
 
-    @property
-    def knows_path(self) -> bool:
-        """Whether the resistance of the path that bridges the turns can be told from their level."""
-        ...
-
-    def circuits(
-        self, motor: Motor, fault_level: Array, winding: NDArray[np.int64], path_ratio: Array
-    ) -> Circuits:
+    def circuits(self, motor: Motor, candidates: Candidates) -> Circuits:
         """Return the matrices of a batch of candidates.
 
         Parameters
         ----------
         motor : Motor
             Nameplate, parameters, channel names and limits of the motor.
-        fault_level : ndarray, shape (candidates,)
-            Fault level, a fraction of the phase turns; 0 is the healthy machine.
-        winding : ndarray of int, shape (candidates,)
-            Winding with the fault: 0, 1 or 2 for the one on terminals a, b, c.
-        path_ratio : ndarray, shape (candidates,)
-            Resistance of the path that bridges the turns over that of the turns, r_f / (mu R_s). Models that
-            know no path ignore it.
+        candidates : Candidates
+            The batch of hypotheses. A model ignores what its fault has not, such as an axis.
 
         Returns
         -------

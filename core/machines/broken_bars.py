@@ -17,9 +17,9 @@ speed at 2 s f adds (1 + 2 s) f.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from core.machines.base import Array, Circuits, RotorAsymmetry
+from core.machines.candidates import Candidates
 from core.machines.healthy import symmetrical
 from core.machines.parameters import Motor
 
@@ -39,35 +39,27 @@ class BrokenBars:
     axis_angle: float = 0.0
     name = "broken-bars"
     lowest_level = 0.0
-    knows_path = False
 
-    def circuits(
-        self, motor: Motor, fault_level: Array, winding: NDArray[np.int64], path_ratio: Array
-    ) -> Circuits:
+    def circuits(self, motor: Motor, candidates: Candidates) -> Circuits:
         """Return the matrices of a batch of candidates.
 
         Parameters
         ----------
         motor : Motor
             Nameplate, parameters, channel names and limits of the motor.
-        fault_level : ndarray, shape (candidates,)
-            Fault level, a fraction of the phase turns; 0 is the healthy machine.
-        winding : ndarray of int, shape (candidates,)
-            Winding with the fault: 0, 1 or 2 for the one on terminals a, b, c.
-        path_ratio : ndarray, shape (candidates,)
-            Resistance of the path that bridges the turns over that of the turns, r_f / (mu R_s).
+        candidates : Candidates
+            The batch of hypotheses.
 
         Returns
         -------
         Circuits
             Inductances, mean resistances and the rotor's turning part.
         """
-        del winding, path_ratio
-        circuits = symmetrical(motor, fault_level.size)
-        half = 0.5 * motor.parameters.rotor_resistance_ohm * resistance_growth(fault_level)
+        circuits = symmetrical(motor, len(candidates))
+        half = 0.5 * motor.parameters.rotor_resistance_ohm * resistance_growth(candidates.fault_level)
         for axis in (2, 3):
             circuits.resistance[:, axis, axis] += half
-        angle = np.full(fault_level.size, self.axis_angle)
+        angle = np.full(len(candidates), self.axis_angle)
         return Circuits(circuits.inductance, circuits.resistance, RotorAsymmetry(half, angle))
 
 

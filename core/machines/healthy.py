@@ -3,9 +3,9 @@
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from core.machines.base import Array, Circuits
+from core.machines.candidates import Candidates
 from core.machines.parameters import MachineParameters, Motor
 
 
@@ -17,31 +17,23 @@ class HealthyMachine:
 
     name = "healthy"
     lowest_level = 0.0
-    knows_path = False
 
-    def circuits(
-        self, motor: Motor, fault_level: Array, winding: NDArray[np.int64], path_ratio: Array
-    ) -> Circuits:
+    def circuits(self, motor: Motor, candidates: Candidates) -> Circuits:
         """Return the matrices of a batch of candidates, which are all alike.
 
         Parameters
         ----------
         motor : Motor
             Nameplate, parameters, channel names and limits of the motor.
-        fault_level : ndarray, shape (candidates,)
-            Fault level, a fraction of the phase turns; 0 is the healthy machine.
-        winding : ndarray of int, shape (candidates,)
-            Winding with the fault: 0, 1 or 2 for the one on terminals a, b, c.
-        path_ratio : ndarray, shape (candidates,)
-            Resistance of the path that bridges the turns over that of the turns, r_f / (mu R_s).
+        candidates : Candidates
+            The batch of hypotheses.
 
         Returns
         -------
         Circuits
             Inductances and resistances.
         """
-        del winding, path_ratio
-        return symmetrical(motor, fault_level.size)
+        return symmetrical(motor, len(candidates))
 
 
 def symmetrical(motor: Motor, candidates: int) -> Circuits:

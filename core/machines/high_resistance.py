@@ -1,9 +1,9 @@
 """A high-resistance connection: one winding with a resistance in series (a loose joint, a cracked lead)."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-from core.machines.base import CLARKE_PHASE, Array, Circuits, winding_axis
+from core.machines.base import CLARKE_PHASE, Circuits, winding_axis
+from core.machines.candidates import Candidates
 from core.machines.healthy import symmetrical
 from core.machines.parameters import Connection, Motor
 
@@ -28,35 +28,27 @@ class HighResistanceConnection:
 
     name = "high-resistance"
     lowest_level = 0.0
-    knows_path = False
 
-    def circuits(
-        self, motor: Motor, fault_level: Array, winding: NDArray[np.int64], path_ratio: Array
-    ) -> Circuits:
+    def circuits(self, motor: Motor, candidates: Candidates) -> Circuits:
         """Return the matrices of a batch of candidates.
 
         Parameters
         ----------
         motor : Motor
             Nameplate, parameters, channel names and limits of the motor.
-        fault_level : ndarray, shape (candidates,)
-            Fault level, a fraction of the phase turns; 0 is the healthy machine.
-        winding : ndarray of int, shape (candidates,)
-            Winding with the fault: 0, 1 or 2 for the one on terminals a, b, c.
-        path_ratio : ndarray, shape (candidates,)
-            Resistance of the path that bridges the turns over that of the turns, r_f / (mu R_s).
+        candidates : Candidates
+            The batch of hypotheses.
 
         Returns
         -------
         Circuits
             Inductances and resistances.
         """
-        del path_ratio
-        circuits = symmetrical(motor, fault_level.size)
-        axis = np.zeros((fault_level.size, 5))
-        axis[:, 0:2] = CLARKE_PHASE * winding_axis(winding)
+        circuits = symmetrical(motor, len(candidates))
+        axis = np.zeros((len(candidates), 5))
+        axis[:, 0:2] = CLARKE_PHASE * winding_axis(candidates.winding)
         if motor.nameplate.connection is Connection.DELTA:
             axis[:, 4] = ZERO_SEQUENCE
-        added = fault_level * motor.parameters.stator_resistance_ohm
+        added = candidates.fault_level * motor.parameters.stator_resistance_ohm
         drop = added[:, np.newaxis, np.newaxis] * axis[:, :, np.newaxis] * axis[:, np.newaxis, :]
         return Circuits(circuits.inductance, circuits.resistance + drop)

@@ -5,7 +5,10 @@ from enum import StrEnum
 from math import pi, sqrt
 from typing import Final, Self
 
+from core.machines.deep_bars import DeepBars, LeakageSaturation, SeenRotor
 from core.machines.sensors import SensorClass
+from core.machines.stator_winding import StatorWinding
+from core.recordings.tables.layout import TableScaling
 
 MAGNETISING_OVER_SELF: Final = 1.5
 """L_m / L_s: the magnetising inductance of three windings together over the self-inductance of one (thesis
@@ -13,6 +16,11 @@ MAGNETISING_OVER_SELF: Final = 1.5
 USUAL_TOLERANCE: Final = 0.1
 """Parameters that were measured or commissioned are within 10 % of the motor's: windings warm up, data sheets
 round off."""
+
+
+FREQUENCIES_OF_RATED = (0.4, 2.4)
+"""Range of a supply's frequency that is looked for, over the rated one: wider than any that is accepted, so
+that a refusal can name what there is instead."""
 
 
 class Connection(StrEnum):
@@ -56,8 +64,11 @@ class Nameplate:
         Number of pole pairs.
     connection : Connection, default Connection.STAR
         Star or delta.
-    rotor_slots : int or None, optional
-        Number of slots, or bars, of the rotor; None where it is not known. Spectra are marked with it.
+    rotor_bars : int or None, optional
+        Number of bars of the cage, or slots of a wound rotor; None where it is not known. Spectra are marked
+        with it, and the speed is looked for with it.
+    rated_speed_rpm : float or None, optional
+        Speed at rated power [rpm], of a wound rotor with its rings shorted; None where it is not known.
     """
 
     rated_power_W: float
@@ -65,7 +76,24 @@ class Nameplate:
     rated_frequency_Hz: float
     pole_pairs: int
     connection: Connection = Connection.STAR
-    rotor_slots: int | None = None
+    rotor_bars: int | None = None
+    rated_speed_rpm: float | None = None
+
+    @property
+    def synchronous_rpm(self) -> float:
+        """Speed without slip at rated frequency [rpm]."""
+        return 60.0 * self.rated_frequency_Hz / self.pole_pairs
+
+    @property
+    def rated_slip(self) -> float | None:
+        """Slip at rated power; None where the plate's speed is not known."""
+        return None if self.rated_speed_rpm is None else 1.0 - self.rated_speed_rpm / self.synchronous_rpm
+
+    @property
+    def frequency_range_Hz(self) -> tuple[float, float]:
+        """Frequencies among which that of the supply is looked for [Hz]: 20 to 120 Hz for rated 50 Hz."""
+        lowest, highest = FREQUENCIES_OF_RATED
+        return lowest * self.rated_frequency_Hz, highest * self.rated_frequency_Hz
 
     @property
     def rated_angular_frequency(self) -> float:
@@ -218,9 +246,17 @@ class ChannelNames:
     line_voltages: tuple[str, str, str] | None = None
 
 
+class CurrentPosition(StrEnum):
+    """Where the current transformers sit."""
+
+    LINE = "line"
+    INSIDE_DELTA = "inside-delta"
+    BEFORE_CAPACITORS = "before-capacitors"
+
+
 @dataclass(frozen=True, slots=True)
 class Transformers:
-    """Ratios of the instrument transformers, where the recordings do not tell them right.
+    """The instrument transformers: their place, and ratios that the recordings do not tell right.
 
     A ratio turns the values as the recording has them written into primary ones, and replaces what the
     recording itself says of ratio and side.
@@ -231,10 +267,49 @@ class Transformers:
         Primary over secondary voltage; 1 where the values are primary ones. None: as the recording says.
     current_ratio : float or None, optional
         The same of the currents.
+    current_position : CurrentPosition, default LINE
+        Whether they measure the line currents of the motor, those of the windings inside its delta, or those
+        of the motor together with its power-factor capacitors.
     """
 
     voltage_ratio: float | None = None
     current_ratio: float | None = None
+    current_position: CurrentPosition = CurrentPosition.LINE
+
+    @property
+    def inside_delta(self) -> bool:
+        """Whether the currents are those of the windings inside the delta."""
+        return self.current_position is CurrentPosition.INSIDE_DELTA
+
+
+@dataclass(frozen=True, slots=True)
+class Capacitors:
+    """Power-factor capacitors that the relay's current transformers measure together with the motor.
+
+    Parameters
+    ----------
+    kvar : float
+        Reactive power of the whole bank at the motor's rated voltage and frequency [kvar].
+    connection : Connection, default DELTA
+        Star or delta.
+    """
+
+    kvar: float
+    connection: Connection = Connection.DELTA
+
+
+@dataclass(frozen=True, slots=True)
+class Cable:
+    """A cable between the voltage transformers and the motor.
+
+    Parameters
+    ----------
+    resistance_ohm, reactance_ohm : float, default 0.0
+        Of one line, at rated frequency [ohm].
+    """
+
+    resistance_ohm: float = 0.0
+    reactance_ohm: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -312,8 +387,6 @@ class WoundRotor:
         Voltage between two open rings at standstill, rated voltage on the stator, rms [V].
     rated_current_A : float
         Current of a ring at rated power, rms [A].
-    rated_speed_rpm : float or None, optional
-        Speed at rated power with the rings shorted [rpm].
     external_resistance_ohm : tuple of float, default (0.0, 0.0)
         Least and largest resistance between a ring and the star point while the motor runs [ohm]; the same
         twice where it is known, zero where the rings are shorted.
@@ -321,7 +394,6 @@ class WoundRotor:
 
     open_circuit_voltage_V: float
     rated_current_A: float
-    rated_speed_rpm: float | None = None
     external_resistance_ohm: tuple[float, float] = (0.0, 0.0)
 
     @property
@@ -360,6 +432,22 @@ class Motor:
         The rotor's winding; None of a motor with a cage.
     thermal : ThermalElement or None, optional
         Its relay's thermal element; None where the file does not tell it.
+    winding : StatorWinding or None, optional
+        How its stator is wound; None where the file does not tell it.
+    deep_bars : DeepBars or None, optional
+        How its rotor changes from a small slip to a great one; None where nothing tells that it does.
+    leakage_saturation : LeakageSaturation or None, optional
+        How its leakage falls at great currents; None where nothing tells that it does.
+    tables : TableScaling, optional
+        How tables of samples become amperes and volts.
+    capacitors : Capacitors or None, optional
+        Power-factor capacitors that are measured with it; None where the file tells of none.
+    cable : Cable or None, optional
+        Its cable, where the voltages are measured at the other end of one that matters.
+    neutral : bool, default False
+        Whether its star point is on the neutral, so that a fourth wire carries the sum of the currents.
+    reads_leniently : bool, default False
+        Whether faults of its relay's recordings are mended, and told, where that takes no guess at values.
     """
 
     name: str
@@ -374,6 +462,26 @@ class Motor:
     start_limits: StartLimits = field(default_factory=StartLimits)
     wound_rotor: WoundRotor | None = None
     thermal: ThermalElement | None = None
+    winding: StatorWinding | None = None
+    deep_bars: DeepBars | None = None
+    leakage_saturation: LeakageSaturation | None = None
+    tables: TableScaling = field(default_factory=TableScaling)
+    capacitors: Capacitors | None = None
+    cable: Cable | None = None
+    neutral: bool = False
+    reads_leniently: bool = False
+
+    @property
+    def backward_rotor(self) -> SeenRotor:
+        """The rotor as the negative sequence sees it, at about twice the frequency of the supply."""
+        if self.deep_bars is None:
+            return SeenRotor(1.0, 1.0)
+        machine = self.parameters
+        return self.deep_bars.seen_at(
+            2.0 * self.nameplate.rated_angular_frequency,
+            machine.rotor_resistance_ohm,
+            machine.rotor_leakage_H,
+        )
 
     @property
     def kind(self) -> MachineKind:

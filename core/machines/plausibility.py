@@ -15,7 +15,8 @@ RATED_POWER_W = (10.0, 100e6)
 RATED_VOLTAGE_V = (10.0, 50e3)
 RATED_FREQUENCY_HZ = (10.0, 400.0)
 MOST_POLE_PAIRS = 100
-MOST_ROTOR_SLOTS = 1000
+MOST_ROTOR_BARS = 1000
+MOST_STATOR_SLOTS = 1000
 LOCKED_ROTOR_CURRENT = (1.5, 20.0)
 """Locked rotor's current over the rated one."""
 LOCKED_ROTOR_S = (0.5, 300.0)
@@ -25,9 +26,19 @@ ROTOR_VOLTAGE_V = (10.0, 10e3)
 ROTOR_POWER = (0.6, 2.0)
 """sqrt(3) times rotor voltage and rotor current, over the rated power."""
 RATED_SPEED = (0.8, 0.9999)
-"""Of a wound rotor with its rings shorted, over the synchronous one."""
+"""At rated power, of a wound rotor with its rings shorted, over the synchronous one."""
 EXTERNAL_RESISTANCE = 2.0
 """Largest resistance at the slip rings of a running motor, over that of rated torque at standstill."""
+DEEP_BAR_RESISTANCE = (1.01, 20.0)
+"""Rotor resistance at a great slip over that at a small one."""
+DEEP_BAR_LEAKAGE = (0.02, 0.99)
+"""The same of its leakage."""
+SATURATING_LEAKAGE = (0.0, 0.9)
+"""Share of the leakage that is lost at great currents."""
+KNEE_CURRENT = (0.5, 20.0)
+"""Current at which leakage begins to saturate, over rated power by rated voltage."""
+KNEE_SHARPNESS = (1.0, 12.0)
+"""How sharp the knee is."""
 RATED_CURRENT_A = (0.01, 10e3)
 """Rated power over sqrt(3) times rated voltage [A]."""
 

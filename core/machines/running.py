@@ -96,9 +96,7 @@ class SteadyRunning:
             Coefficients of the batch.
         """
         n = len(candidates)
-        circuits = self.model.circuits(
-            self.motor, candidates.fault_level, candidates.winding, candidates.path_ratio
-        )
+        circuits = self.model.circuits(self.motor, candidates)
         load = np.zeros((n, 3))
         load[:, int(self.load_law)] = candidates.load_level * self._torque_per_pole_pair
         machines = MachineRates(np.empty((n, 5, 5)), np.empty((n, 5, 5)), load, self._gain)

@@ -1,9 +1,9 @@
 """The thesis's fault model: an additional shorted winding on the axis of one phase (thesis 6.10-6.15)."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-from core.machines.base import CLARKE_PHASE, Array, Circuits, winding_axis
+from core.machines.base import CLARKE_PHASE, Circuits, winding_axis
+from core.machines.candidates import Candidates
 from core.machines.healthy import symmetrical
 from core.machines.model_names import Model
 from core.machines.parameters import Motor
@@ -24,36 +24,29 @@ class ShortedWinding:
 
     name = Model.SHORTED_WINDING
     lowest_level = 0.0
-    knows_path = False
 
-    def circuits(
-        self, motor: Motor, fault_level: Array, winding: NDArray[np.int64], path_ratio: Array
-    ) -> Circuits:
+    def circuits(self, motor: Motor, candidates: Candidates) -> Circuits:
         """Return the matrices of a batch of candidates.
 
         Parameters
         ----------
         motor : Motor
             Nameplate, parameters, channel names and limits of the motor.
-        fault_level : ndarray, shape (candidates,)
-            Fault level, a fraction of the phase turns; 0 is the healthy machine.
-        winding : ndarray of int, shape (candidates,)
-            Winding with the fault: 0, 1 or 2 for the one on terminals a, b, c.
-        path_ratio : ndarray, shape (candidates,)
-            Resistance of the path that bridges the turns over that of the turns, r_f / (mu R_s).
+        candidates : Candidates
+            The batch of hypotheses.
 
         Returns
         -------
         Circuits
             Inductances and resistances.
         """
-        del path_ratio
-        circuits = symmetrical(motor, fault_level.size)
+        fault_level = candidates.fault_level
+        circuits = symmetrical(motor, len(candidates))
         L, R = circuits.inductance, circuits.resistance
         machine = motor.parameters
         L_m = machine.magnetising_inductance_H
         faulty = np.abs(fault_level) > SMALLEST_LEVEL
-        coupling = CLARKE_PHASE * L_m * winding_axis(winding[faulty])
+        coupling = CLARKE_PHASE * L_m * winding_axis(candidates.winding[faulty])
         L[faulty, 0:2, 4] = L[faulty, 2:4, 4] = coupling
         L[faulty, 4, 0:2] = L[faulty, 4, 2:4] = coupling
         L[faulty, 4, 4] = machine.stator_leakage_H + CLARKE_PHASE**2 * L_m

@@ -185,11 +185,7 @@ class StartPlayback:
             If a time offset reaches beyond the voltages there are.
         """
         n, delays = len(candidates), candidates.time_offset_s
-        if n and not (self.earliest_offset_s <= delays.min() and delays.max() <= self.latest_offset_s):
-            raise ValueError(
-                f"time offsets: expected {self.earliest_offset_s:g} to {self.latest_offset_s:g} s, for which "
-                f"the record has voltages, found {delays.min():g} to {delays.max():g} s"
-            )
+        self.require_voltages(delays)
         share = self._reference_inertia / candidates.inertia_kgm2
         load = np.zeros((n, 3))
         load[:, int(self.load_law)] = candidates.load_level * self._torque_per_pole_pair * share
@@ -203,6 +199,26 @@ class StartPlayback:
         nothing = Comparison(np.empty((0, 2)), 1, np.empty(n))
         play(self._feed, delays, machines, InitialState(flux, np.zeros(n)), nothing, track)
         return Trajectories(track.current[:, :, self._wanted], track.speed[:, self._wanted])
+
+    def require_voltages(self, offsets_s: Array) -> None:
+        """Raise an error where an offset reaches beyond the voltages there are.
+
+        Parameters
+        ----------
+        offsets_s : ndarray, shape (candidates,)
+            Delays of the currents against the voltages [s].
+
+        Raises
+        ------
+        ValueError
+            If one does.
+        """
+        earliest, latest = self.earliest_offset_s, self.latest_offset_s
+        if offsets_s.size and not (earliest <= offsets_s.min() and offsets_s.max() <= latest):
+            raise ValueError(
+                f"time offsets: expected {earliest:g} to {latest:g} s, for which the record has voltages, "
+                f"found {offsets_s.min():g} to {offsets_s.max():g} s"
+            )
 
 
 def _circuits(candidates: StartCandidates, share: Array) -> tuple[Array, Array]:

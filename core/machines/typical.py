@@ -51,6 +51,10 @@ FACTORS = {
 
 PLATE_FACTOR = 1.6
 """The same of a wound rotor's resistance by its plate: speed and voltages are rounded, windings warm up."""
+SLIP_TOLERANCE, SLIP_TOLERANCE_BELOW_1_KW = 0.2, 0.3
+"""IEC 60034-1, table 20: how far the slip at rated power may be from that of the plate's speed."""
+ROUNDING_RPM = 5.0
+"""Plates round the speed to this at worst."""
 
 ALL_ALIKE = 3
 """Impedances beyond what is typical that point to a common cause."""
@@ -88,7 +92,7 @@ def typical_parameters(nameplate: Nameplate, wound_rotor: WoundRotor | None = No
     """Return the parameters that are typical of a nameplate.
 
     Between the powers of the table the logarithm of a parameter goes evenly with that of the power. Beyond
-    them the last one holds. The resistance of a wound rotor is that of its plate, where this has a speed.
+    them the last one holds. Where the plate has a speed, the rotor's resistance follows from it.
 
     Parameters
     ----------
@@ -113,15 +117,60 @@ def typical_parameters(nameplate: Nameplate, wound_rotor: WoundRotor | None = No
         inertia_kgm2=INERTIA_CONSTANT_S * nameplate.base_inertia_kgm2,
     )
     factors = FACTORS
-    plate_ohm = None if wound_rotor is None else plate_resistance_ohm(nameplate, wound_rotor)
-    if plate_ohm is not None:
+    told = _of_plate(nameplate, wound_rotor, parameters)
+    if told is not None:
+        plate_ohm, factor = told
         parameters = replace(parameters, rotor_resistance_ohm=plate_ohm)
-        factors = FACTORS | {"rotor_resistance_ohm": PLATE_FACTOR}
+        factors = FACTORS | {"rotor_resistance_ohm": factor}
     intervals = {
         name: (getattr(parameters, name) / factor, getattr(parameters, name) * factor)
         for name, factor in factors.items()
     }
     return TypicalParameters(parameters, intervals)
+
+
+def _of_plate(
+    nameplate: Nameplate, wound_rotor: WoundRotor | None, known: MachineParameters
+) -> tuple[float, float] | None:
+    """Return the rotor's resistance by the plate's speed [ohm], and the factor within which it is."""
+    if wound_rotor is not None:
+        wound_ohm = plate_resistance_ohm(nameplate, wound_rotor)
+        return None if wound_ohm is None else (wound_ohm, PLATE_FACTOR)
+    slip, slip_rpm = nameplate.rated_slip, nameplate.synchronous_rpm - (nameplate.rated_speed_rpm or 0.0)
+    if slip is None:
+        return None
+    tolerance = SLIP_TOLERANCE if nameplate.rated_power_W >= 1e3 else SLIP_TOLERANCE_BELOW_1_KW
+    return cage_resistance_ohm(nameplate, known, slip), 1.0 + tolerance + ROUNDING_RPM / slip_rpm
+
+
+def cage_resistance_ohm(nameplate: Nameplate, machine: MachineParameters, slip: float) -> float:
+    """Return the resistance at which a cage takes up rated power at a slip.
+
+    Behind the stator, a source V_th with the impedance R_th + j X_th feeds R_r/s + j X_lr, which takes
+    P / (1 - s). Of the two resistances that do, a motor runs at the greater one.
+
+    Parameters
+    ----------
+    nameplate : Nameplate
+        Rated values of the motor.
+    machine : MachineParameters
+        Its other parameters.
+    slip : float
+        Slip at rated power.
+
+    Returns
+    -------
+    float
+        R_r' at a small slip [ohm].
+    """
+    w = nameplate.rated_angular_frequency
+    z = complex(machine.stator_resistance_ohm, w * machine.stator_leakage_H)
+    X_m = 1j * w * machine.magnetising_inductance_H
+    behind = z * X_m / (z + X_m)
+    volts = abs(X_m / (z + X_m)) * nameplate.winding_voltage_V
+    R, X = behind.real, behind.imag + w * machine.rotor_leakage_H
+    half = 1.5 * volts**2 * (1.0 - slip) / nameplate.rated_power_W - R
+    return slip * (half + sqrt(max(half**2 - R**2 - X**2, 0.0)))
 
 
 def plate_resistance_ohm(nameplate: Nameplate, wound_rotor: WoundRotor) -> float | None:
@@ -142,10 +191,9 @@ def plate_resistance_ohm(nameplate: Nameplate, wound_rotor: WoundRotor) -> float
     float or None
         R_r' [ohm]; None where the plate has no speed.
     """
-    if wound_rotor.rated_speed_rpm is None:
+    slip = nameplate.rated_slip
+    if slip is None:
         return None
-    synchronous_rpm = 60.0 * nameplate.rated_frequency_Hz / nameplate.pole_pairs
-    slip = 1.0 - wound_rotor.rated_speed_rpm / synchronous_rpm
     own_ohm = slip / (1.0 - slip) * nameplate.rated_power_W / (3.0 * wound_rotor.rated_current_A**2)
     turns_ratio = sqrt(3.0) * nameplate.winding_voltage_V / wound_rotor.open_circuit_voltage_V
     return turns_ratio**2 * own_ohm

@@ -46,7 +46,7 @@ def assumed_voltage(current_abc: Array, sample_rate_hz: float, nameplate: Namepl
         If the currents have no fundamental.
     """
     current_ab = clarke(current_abc)
-    frequency = fundamental_frequency(current_ab, sample_rate_hz)
+    frequency = fundamental_frequency(current_ab, sample_rate_hz, search_hz=nameplate.frequency_range_Hz)
     phasors = sequence_phasors(fundamental_phasors(current_ab, frequency, sample_rate_hz))
     backwards = phasors.sequence is PhaseSequence.ACB
     strong = phasors.negative if backwards else phasors.positive

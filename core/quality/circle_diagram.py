@@ -28,11 +28,17 @@ class CircleDiagram:
         Line current at rated torque and voltage, rms [A].
     pull_out_torque_Nm : float
         Greatest torque of all slips at rated voltage [N m].
+    generating : ndarray of complex, shape (slips,)
+        The admittance at the same slips below zero, where the load drives the machine [S].
+    is_delta : bool
+        Whether the windings are in delta.
     """
 
     admittance: NDArray[np.complex128]
     rated_current_A: float
     pull_out_torque_Nm: float
+    generating: NDArray[np.complex128]
+    is_delta: bool
 
     @property
     def at_no_load(self) -> float:
@@ -73,8 +79,22 @@ class CircleDiagram:
         float
             Angle at the nearest point of the diagram [deg].
         """
-        nearest = int(np.argmin(np.abs(np.abs(self.admittance) - admittance)))
-        return -float(np.degrees(np.angle(self.admittance[nearest])))
+        return _lag_deg(self.admittance, admittance)
+
+    def generating_lag_deg(self, admittance: float) -> float:
+        """Return by how much the current lags the voltage where the machine generates as much.
+
+        Parameters
+        ----------
+        admittance : float
+            Size of the admittance [S].
+
+        Returns
+        -------
+        float
+            Angle at the nearest point [deg].
+        """
+        return _lag_deg(self.generating, admittance)
 
 
 def circle_diagram(motor: Motor, frequency_hz: float) -> CircleDiagram:
@@ -97,6 +117,7 @@ def circle_diagram(motor: Motor, frequency_hz: float) -> CircleDiagram:
     machine, nameplate = motor.parameters, motor.nameplate
     w = 2.0 * pi * frequency_hz
     rotor = machine.rotor_resistance_ohm / _SLIPS + 1j * w * machine.rotor_leakage_H
+    driven = -machine.rotor_resistance_ohm / _SLIPS + 1j * w * machine.rotor_leakage_H
     magnetising = 1j * w * machine.magnetising_inductance_H
     stator = machine.stator_resistance_ohm + 1j * w * machine.stator_leakage_H
     impedance = stator + magnetising * rotor / (magnetising + rotor)
@@ -113,4 +134,13 @@ def circle_diagram(motor: Motor, frequency_hz: float) -> CircleDiagram:
         admittance=np.asarray(per_line / impedance, dtype=np.complex128),
         rated_current_A=float(current[point]) * (1.0 if per_line == 1.0 else sqrt(3.0)),
         pull_out_torque_Nm=float(torque[pull_out]),
+        generating=np.asarray(
+            per_line / (stator + magnetising * driven / (magnetising + driven)), dtype=np.complex128
+        ),
+        is_delta=nameplate.connection is Connection.DELTA,
     )
+
+
+def _lag_deg(points: NDArray[np.complex128], admittance: float) -> float:
+    nearest = int(np.argmin(np.abs(np.abs(points) - admittance)))
+    return -float(np.degrees(np.angle(points[nearest])))

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from core.operation import Operation
 from core.quality.circle_diagram import CircleDiagram
 from core.quality.finding import QualityFinding, finding
-from core.quality.ratios import current_advice, current_cause, power_in_kW
+from core.quality.ratios import appended, current_advice, current_cause, power_in_kW
 from core.quality.supply import Feed
 from core.quantity_text import with_unit
 from core.recordings import Channel
@@ -24,17 +24,6 @@ OPEN_WIRE, OPEN_CHANNEL = 0.01, 0.1
 An open wire carries no current. Severe shorts without load on an unbalanced supply reach 0.016, and their
 currents add up to zero. With an open channel they do not, and the channel may show crosstalk.
 """
-SATURATED, SATURATED_UNPAIRED = 0.05, 0.15
-"""Limit for the 2nd and 3rd harmonic of the sum of the currents, over a phase current.
-
-The sum of three wires has no such harmonics, whatever supply and winding are like. Saturated transformers
-cause 10 % and more.
-"""
-SATURATED_PHASE = 0.15
-"""Limit for the same harmonics of one phase.
-
-It is used where the sum is zero because the recorder computed the third current.
-"""
 COMPUTED_SUM = 1e-6
 CURRENT_SUM, CURRENT_SUM_UNPAIRED = 0.045, 0.3
 """Fundamental of the currents' sum over the greatest: 1 % and 50 us between channels leave 2.6 % at worst.
@@ -44,6 +33,8 @@ LEAST_OF_NO_LOAD = 0.5
 
 Errors of the sensors and of parameters within 10 % lower it to 0.85 at most.
 """
+LESS_IN_STAR, STAR_RANGE = 3.0, (0.8, 1.3)
+"""How much less a motor for delta draws in star, and the range of its currents in delta."""
 MOST_OF_STANDSTILL, IMPOSSIBLE_OF_STANDSTILL = 0.6, 1.4
 """Shares of the locked rotor's current: severe shorts at full load reach 0.35; only a wrong ratio exceeds
 1."""
@@ -60,10 +51,12 @@ STRONGLY_UNBALANCED = 0.05
 LEAST_LAG_DEG, MOST_LAG_DEG = -20.0, 110.0
 """Range of the lag of the current: 0 to 90 degrees of a motor, widened by delays between channels."""
 
+NEAR_GENERATING_DEG, MAYBE_DEG = 15.0, 45.0
+"""How far a lag may be from that of a generating machine: with parameters within 10 %; with severe shorts."""
+NEAR_RING_DEG = 30.0
+"""How far a lag may be from a third of a cycle off, where phases may be exchanged in a ring."""
 LEAST_LAG_AT_REST_DEG = 45.0
 """Least lag of a locked rotor's current: its power factor is 0.1 to 0.6, that of full load 0.7 and more."""
-
-_SIGNS = ((-1.0, 1.0, 1.0), (1.0, -1.0, 1.0), (1.0, 1.0, -1.0))
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,9 +189,25 @@ def level(currents: Currents, feed: Feed, circle: CircleDiagram) -> Iterator[Qua
     yield finding(
         "current", currents.strong, limit, "A", passed=not small and currents.strong <= limit,
         message=f"{with_unit(currents.strong, 'A')} is {'less' if small else 'more'} than this motor can "
-        f"draw ({drawn}): a wrong ratio, secondary amperes, kA for A, "
-        f"or another motor's nameplate; {advice}",
+        f"draw ({drawn}): {_less_current(currents, feed, circle) if small else ''}a wrong ratio, secondary "
+        f"amperes, kA for A, or another motor's nameplate{appended(advice)}",
     )  # fmt: skip
+
+
+def _less_current(currents: Currents, feed: Feed, circle: CircleDiagram) -> str:
+    """Say what besides wrong figures makes a current too small: windings in star, or capacitors."""
+    if feed.assumed:
+        return ""
+    found, in_star = "", LESS_IN_STAR * currents.strong
+    least, most = circle.running_range_A(feed.strong)
+    if circle.is_delta and STAR_RANGE[0] * least <= in_star <= STAR_RANGE[1] * most:
+        found = "it runs in star (a star-delta starter that stays in star), "
+    voltage, forward, _ = _in_the_sense_of(feed, currents)
+    seen = forward / voltage
+    # What capacitors leave has the power of a motor: the real part of a point of the diagram.
+    if 0.0 < seen.real < most / feed.strong:
+        found += "capacitors that are measured with it ([capacitors] of the motor file), "
+    return found
 
 
 def _lags_as_at_rest(currents: Currents, feed: Feed) -> bool:
@@ -231,82 +240,20 @@ def phase_loss(currents: Currents, feed: Feed) -> Iterator[QualityFinding]:
     """
     least = float(currents.sizes.min() / currents.greatest)
     name = currents.names[int(currents.sizes.argmin())]
-    limit = OPEN_CHANNEL if _sum(currents) > _most_sum(feed) else OPEN_WIRE
+    limit = OPEN_CHANNEL if sum_of(currents) > most_sum(feed) else OPEN_WIRE
     yield finding(
         "phase loss", least, limit, "of the greatest", passed=least >= limit,
         message=f"{name} shows {least:.1%} of the greatest current: wire or channel open, or a fuse blown",
     )  # fmt: skip
 
 
-def saturation(currents: Currents, feed: Feed) -> Iterator[QualityFinding]:
-    """Check that the current transformers do not saturate.
-
-    Parameters
-    ----------
-    currents : Currents
-        Phasors of the line currents.
-    feed : Feed
-        Frequency and phasors of the voltages.
-
-    Yields
-    ------
-    QualityFinding
-        The finding.
-    """
-    harmonics = currents.by_order[:, 1:]
-    if float(np.abs(currents.by_order[:, 0].sum())) < COMPUTED_SUM * currents.greatest:
-        share = float((np.linalg.norm(harmonics, axis=1) / currents.sizes).max())
-        limit = SATURATED_PHASE
-    else:
-        share = float(np.linalg.norm(harmonics.sum(axis=0))) / currents.greatest
-        limit = SATURATED_UNPAIRED if feed.assumed else SATURATED
-    yield finding(
-        "saturation", share, limit, "of one phase", passed=share <= limit,
-        message=f"2nd and 3rd harmonics make {share:.0%}, which three wires cannot carry: a current "
-        "transformer (or its input) saturates; take one with a smaller burden or a higher ratio",
-    )  # fmt: skip
-
-
-def adding_up(currents: Currents, feed: Feed) -> Iterator[QualityFinding]:
-    """Check that the currents add up to nothing; a sum shows a channel reversed or of a wrong ratio.
-
-    Parameters
-    ----------
-    currents : Currents
-        Phasors of the line currents.
-    feed : Feed
-        Frequency and phasors of the voltages.
-
-    Yields
-    ------
-    QualityFinding
-        A finding.
-    """
-    phasors = currents.by_order[:, 0]
-    limit, share = _most_sum(feed), _sum(currents)
-    turned = [float(abs((phasors * np.array(signs)).sum())) / currents.greatest for signs in _SIGNS]
-    best = int(np.argmin(turned))
-    wrong = share > limit
-    reversed_one = wrong and turned[best] <= limit
-    yield finding(
-        "current polarity", share, limit, "of one phase", passed=not reversed_one,
-        message=f"with {currents.names[best]} the other way round the currents add up to nothing: "
-        "exchange its wires",
-    )  # fmt: skip
-    if reversed_one:
-        return
-    yield finding(
-        "current sum", share, limit, "of one phase", passed=not wrong,
-        message=f"the three currents leave {share:.1%} where they should add up to nothing: one is scaled or "
-        "timed wrongly, or the motor has an earth fault",
-    )  # fmt: skip
-
-
-def _sum(currents: Currents) -> float:
+def sum_of(currents: Currents) -> float:
+    """Return the sum of the currents over the greatest."""
     return float(abs(currents.by_order[:, 0].sum())) / currents.greatest
 
 
-def _most_sum(feed: Feed) -> float:
+def most_sum(feed: Feed) -> float:
+    """Return the greatest sum that channels of three wires show."""
     return CURRENT_SUM_UNPAIRED if feed.assumed else CURRENT_SUM
 
 
@@ -367,11 +314,21 @@ def order(currents: Currents, feed: Feed, circle: CircleDiagram) -> Iterator[Qua
     # A lag off by a third of a cycle means cyclically exchanged phases, one by half a cycle reversed ones.
     ring = not within and abs((off + 180.0) % 360.0 - 180.0) < 150.0
     nearest = LEAST_LAG_DEG if lag < LEAST_LAG_DEG else MOST_LAG_DEG
+    off_generating = abs(lag - circle.generating_lag_deg(abs(forward) / abs(voltage)))
+    off_ring = abs(abs((off + 180.0) % 360.0 - 180.0) - 120.0)
+    if not within and off_generating < NEAR_GENERATING_DEG and off_ring > NEAR_RING_DEG:
+        yield finding(
+            "generating", lag, nearest, "degrees behind", passed=False,
+            message=f"the currents lie {lag:.0f} degrees behind the voltages: the load drives the motor, "
+            "which generates; record while it drives its load",
+        )  # fmt: skip
+        return
     if ring:
+        generates = ", or the load drives the motor, which generates" if off_generating < MAYBE_DEG else ""
         yield finding(
             "phase order", lag, nearest, "degrees behind", passed=False,
             message=f"the currents lie {lag:.0f} degrees behind the voltages, a third of a cycle off: the "
-            "phases are exchanged in a ring",
+            f"phases are exchanged in a ring{generates}",
         )  # fmt: skip
         return
     yield turning

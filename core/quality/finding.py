@@ -139,3 +139,19 @@ def all_passed(findings: list[QualityFinding]) -> bool:
         Whether none failed.
     """
     return all(one.passed for one in findings)
+
+
+def file_repair(message: str) -> QualityFinding:
+    """Return what a lenient reader mended in a recording's file, as a finding.
+
+    Parameters
+    ----------
+    message : str
+        What was at fault, and what was done about it.
+
+    Returns
+    -------
+    QualityFinding
+        The warning.
+    """
+    return file_warning(f"repaired: {message}")

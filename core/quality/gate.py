@@ -6,16 +6,20 @@ and only then what the currents are like.
 """
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from core.machines.base import Array
-from core.machines.parameters import Motor, Nameplate
-from core.quality import currents, samples, supply
+from core.machines.feeder import at_the_motor, has_feeder
+from core.machines.parameters import CurrentPosition, Motor, Nameplate
+from core.quality import current_sum, currents, samples, supply
 from core.quality.circle_diagram import circle_diagram
+from core.quality.copied import copied
+from core.quality.counts import counts
 from core.quality.finding import QualityFinding, all_passed
 from core.quality.magnitude import is_far_too_large, magnitude
 from core.quality.operation import is_small, operation
 from core.quality.steadiness import steadiness
+from core.quality.stretches import ended
 from core.signals.sequence import PhaseSequence
 from core.signals.terminals import Terminals
 
@@ -26,14 +30,17 @@ class Passed:
 
     Parameters
     ----------
+    current_abc : ndarray, shape (3, n)
+        Line currents of the motor: without those of capacitors that its file tells of [A].
     voltage_ab : ndarray, shape (2, n)
-        Voltages on Clarke axes as measured or, where none were, assumed [V].
+        Voltages on Clarke axes as measured or, where none were, assumed; behind a cable of the file [V].
     frequency_hz : float
         Supply frequency [Hz].
     sequence : PhaseSequence
         Order in which the supply's phases reach their maxima.
     """
 
+    current_abc: Array
     voltage_ab: Array
     frequency_hz: float
     sequence: PhaseSequence
@@ -65,6 +72,7 @@ def examine(
         found += group
         if not all_passed(found):
             return found, None
+    terminals = _at_the_motor(terminals, motor)
     feed = supply.feed_of(terminals, motor.nameplate)
     if isinstance(feed, QualityFinding):
         return [*found, feed], None
@@ -72,7 +80,17 @@ def examine(
         found += group
         if not all_passed(found):
             return found, None
-    return found, Passed(feed.voltage_ab, feed.frequency_hz, feed.phasors.sequence)
+    return found, Passed(terminals.current_abc, feed.voltage_ab, feed.frequency_hz, feed.phasors.sequence)
+
+
+def _at_the_motor(terminals: Terminals, motor: Motor) -> Terminals:
+    """Return the motor's own currents and voltages, where its file tells of capacitors or of a cable."""
+    if terminals.voltage_ab is None or not has_feeder(motor):
+        return terminals
+    current_abc, voltage_ab = at_the_motor(
+        motor, terminals.current_abc, terminals.voltage_ab, terminals.sample_rate_hz
+    )
+    return replace(terminals, current_abc=current_abc, voltage_ab=voltage_ab)
 
 
 def sampled_well(terminals: Terminals, nameplate: Nameplate) -> list[QualityFinding]:
@@ -91,6 +109,8 @@ def sampled_well(terminals: Terminals, nameplate: Nameplate) -> list[QualityFind
         Findings of all checks made.
     """
     found = list(samples.extent(terminals, nameplate))
+    if all_passed(found):
+        found += counts(terminals, nameplate)
     if all_passed(found):
         found += magnitude(terminals, nameplate)
     if all_passed(found):
@@ -125,21 +145,35 @@ def wired_well(terminals: Terminals, motor: Motor, *, timed: bool) -> list[Quali
     found = list(supply.channels(feed, terminals))
     if all_passed(found):
         seen = currents.currents_of(terminals, feed.frequency_hz)
-        found += [*currents.phase_loss(seen, feed), *currents.adding_up(seen, feed)]
+        found += currents.phase_loss(seen, feed)
+        if is_sum_measured(terminals, motor):
+            found += current_sum.adding_up(seen, feed, motor)
         if all_passed(found):
             circle = circle_diagram(motor, feed.frequency_hz)
             found += currents.order(seen, feed, circle) if timed else [currents.rotation(seen, feed)]
     return found
 
 
+def is_sum_measured(terminals: Terminals, motor: Motor) -> bool:
+    """Whether the sum of the currents tells anything.
+
+    That of computed currents and of differences is zero, and a neutral carries that of its motor.
+    """
+    inside = motor.transformers.current_position is CurrentPosition.INSIDE_DELTA
+    return terminals.computed_current is None and not inside and not motor.neutral
+
+
 def _sampled(terminals: Terminals, motor: Motor, *, tripped: bool) -> Iterator[Iterable[QualityFinding]]:
     """Yield groups of findings on the samples themselves and on what the motor does."""
     per_cycle = terminals.sample_rate_hz / motor.nameplate.rated_frequency_Hz
     yield samples.extent(terminals, motor.nameplate)
+    yield counts(terminals, motor.nameplate)
+    yield copied(terminals)
     if not is_far_too_large(terminals, motor.nameplate):
         yield samples.sampled_slowly(terminals.voltage_channels, terminals.voltages)
         yield samples.sampled_slowly(terminals.current_channels, terminals.current_abc)
     yield operation(terminals, motor, tripped=tripped)
+    yield ended(terminals, motor)
     yield magnitude(terminals, motor.nameplate)
     yield samples.holding(terminals.voltage_channels, terminals.voltages, per_cycle)
     if not is_small(terminals, motor):
@@ -163,7 +197,9 @@ def _electrical(terminals: Terminals, feed: supply.Feed, motor: Motor) -> Iterat
     yield currents.running(seen, feed, circle)
     yield currents.phase_loss(seen, feed)
     yield currents.level(seen, feed, circle)
-    yield currents.saturation(seen, feed)
-    yield currents.adding_up(seen, feed)
+    yield current_sum.saturation(seen, feed, motor)
+    if is_sum_measured(terminals, motor):
+        yield current_sum.adding_up(seen, feed, motor)
+    yield current_sum.transformers(terminals, motor)
     yield currents.order(seen, feed, circle)
     yield steadiness(terminals, feed, seen, circle)

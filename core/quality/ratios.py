@@ -147,6 +147,22 @@ def power_in_kW(amps: float, plausible_A: tuple[float, float], rated_A: float) -
     )
 
 
+def appended(advice: str) -> str:
+    """Return advice as the end of a sentence.
+
+    Parameters
+    ----------
+    advice : str
+        The advice, "" where there is none.
+
+    Returns
+    -------
+    str
+        The advice behind a semicolon; "" where there is none.
+    """
+    return f"; {advice}" if advice else ""
+
+
 def _range(
     amps: float, plausible_A: tuple[float, float], rated_A: float, channels: tuple[Channel, ...]
 ) -> str:

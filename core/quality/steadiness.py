@@ -10,7 +10,7 @@ from core.quality.circle_diagram import CircleDiagram
 from core.quality.currents import Currents
 from core.quality.finding import QualityFinding, finding
 from core.quality.supply import Feed
-from core.quality.swing import without_swing
+from core.quality.swing import swing_period_s, without_swing
 from core.signals.clarke import clarke
 from core.signals.sequence import PhaseSequence, SequencePhasors
 from core.signals.terminals import Terminals
@@ -18,9 +18,12 @@ from core.signals.terminals import Terminals
 UNSTEADY_CURRENT = 0.18
 """Farthest that the forward current goes from its mean, of rated: a load that swings by 10 % of the rated
 torque moves it by 0.13 at most, a third of the rated load switched by as much as the limit."""
-LARGEST_SWING = 0.36
-"""The same with a regular swing in it: broken bars beside a load that swings by 10 % of the rated torque
-reach 0.25."""
+LARGEST_SWING = 0.9
+"""The same with a regular swing in it: a compressor whose torque swings by half the rated one reaches 0.6."""
+SWINGS = 3
+"""Lines of a swing that are taken off: its own frequency and two multiples."""
+PERIODS_NEEDED = 3.0
+"""Periods of a swinging load that a record should hold."""
 UNSTEADY_VOLTAGE = 0.1
 """The same limit of the voltage, as a share of its mean: dips, switching, and cycles lost from the record."""
 
@@ -57,14 +60,47 @@ def steadiness(
     course = _course(clarke(terminals.current_abc), currents.phasors, per_cycle)
     seen = np.abs(course) if feed.assumed else course
     of_rated = currents.strong / circle.rated_current_A
-    amps = _farthest(seen) * of_rated
-    if UNSTEADY_CURRENT < amps <= LARGEST_SWING:
-        amps = _farthest(without_swing(seen, 1.0 / terminals.sample_rate_hz, feed.frequency_hz)) * of_rated
+    amps, step_s = _farthest(seen) * of_rated, 1.0 / terminals.sample_rate_hz
+    swing, left = amps, seen
+    for _ in range(SWINGS):
+        if UNSTEADY_CURRENT < amps <= LARGEST_SWING:
+            left = without_swing(left, step_s, feed.frequency_hz)
+            amps = _farthest(left) * of_rated
     yield finding(
         "steadiness", amps, UNSTEADY_CURRENT, "of rated", passed=amps <= UNSTEADY_CURRENT,
-        message=f"the current moves by {amps:.0%} of the rated one within the record: the load changes, or "
-        "the motor starts or stops; record at a steady load",
+        message=f"the current moves by {swing:.0%} of the rated one within the record: "
+        f"{_what_moves(seen, step_s, feed.frequency_hz)}",
     )  # fmt: skip
+    if amps <= UNSTEADY_CURRENT < swing:
+        period_s = swing_period_s(seen, step_s, feed.frequency_hz)
+        often = "" if period_s is None else f" every {period_s:.2g} s"
+        yield QualityFinding(
+            "pulsating load", swing, LARGEST_SWING, "of rated", passed=True,
+            message=f"the load pulsates{often} and moves the current by {swing:.0%} of the rated one: what "
+            "is steady beside it is diagnosed",
+        )  # fmt: skip
+    if feed.assumed or amps > UNSTEADY_CURRENT:
+        return
+    against = np.conj(_course(clarke(terminals.current_abc), currents.phasors, -per_cycle))
+    # What the means of a cycle leave of a fast swing of the load shows here too.
+    limit = UNSTEADY_CURRENT * (1.0 + swing)
+    uneven = float(np.abs(against - against.mean()).max() / np.sqrt(3.0)) / circle.rated_current_A
+    yield finding(
+        "phase steadiness", uneven, limit, "of rated", passed=uneven <= limit,
+        message=f"the negative-sequence current moves by {uneven:.0%} of the rated one within the record: "
+        "a fuse blows, a wire opens, or the motor starts or stops",
+    )  # fmt: skip
+
+
+def _what_moves(course: NDArray[np.complex128] | Array, step_s: float, frequency_hz: float) -> str:
+    """Say what a load does that is not steady, and how long a record would tell the motor all the same."""
+    period_s = swing_period_s(course, step_s, frequency_hz)
+    if period_s is None:
+        return "the load changes, or the motor starts or stops; record at a steady load"
+    return (
+        f"the load swings about every {period_s:.2g} s, or changes; record at a steady load, or at least "
+        f"{PERIODS_NEEDED * period_s:.1f} s of it"
+    )
 
 
 def _course(x_ab: Array, phasors: SequencePhasors, per_cycle: float) -> NDArray[np.complex128]:
@@ -76,7 +112,7 @@ def _course(x_ab: Array, phasors: SequencePhasors, per_cycle: float) -> NDArray[
     if phasors.sequence is PhaseSequence.ACB:
         vector = vector.conj()
     turning = vector * np.exp(-2j * np.pi / per_cycle * np.arange(vector.size))
-    cycle = round(per_cycle)
+    cycle = round(abs(per_cycle))
     sums = np.cumsum(np.concatenate([[0.0], turning]))
     return np.asarray((sums[cycle:] - sums[:-cycle]) / cycle, dtype=np.complex128)
 

@@ -10,7 +10,7 @@ from core.machines.base import Array
 from core.machines.parameters import Nameplate
 from core.quality.assumed_supply import assumed_voltage
 from core.quality.finding import QualityFinding, finding
-from core.quality.ratios import voltage_advice
+from core.quality.ratios import appended, voltage_advice
 from core.quantity_text import plain
 from core.recordings import Channel
 from core.signals.decimation import decimate
@@ -311,8 +311,9 @@ def _scaling_hint(share: float, nameplate: Nameplate, channels: tuple[Channel, .
         return ": line and phase voltages mixed up"
     advice = voltage_advice(share * nameplate.rated_voltage_V, nameplate, channels)
     if share < LOWEST_VOLTAGE:
-        return f": secondary volts or kV, a wrong ratio, or a motor being started or switched off; {advice}"
-    return f": a wrong ratio or unit, or another motor's nameplate; {advice}"
+        why = ": secondary volts or kV, a wrong ratio, or a motor being started or switched off"
+        return why + appended(advice)
+    return f": a wrong ratio or unit, or another motor's nameplate{appended(advice)}"
 
 
 def _pulses(share: float) -> QualityFinding:
@@ -326,12 +327,14 @@ def _pulses(share: float) -> QualityFinding:
 def _frequency(voltage_ab: Array, rate: float, nameplate: Nameplate) -> float:
     """Find the frequency of the voltages; where a drive's pulses hide the fundamental, of their average."""
     try:
-        return fundamental_frequency(voltage_ab, rate)
+        return fundamental_frequency(voltage_ab, rate, search_hz=nameplate.frequency_range_Hz)
     except SignalError:
         factor = int(rate / nameplate.rated_frequency_Hz / SMOOTHED_RATE_CYCLES)
         if factor < 2:
             raise
-        return fundamental_frequency(decimate(voltage_ab, factor), rate / factor)
+        return fundamental_frequency(
+            decimate(voltage_ab, factor), rate / factor, search_hz=nameplate.frequency_range_Hz
+        )
 
 
 def _strongest_line(voltage_ab: Array) -> float:

@@ -5,10 +5,10 @@ other, or whose phase cannot be told, keeps phase None: the motor's file can sti
 """
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from core.recordings.waveform import Quantity
+from core.recordings.waveform import REVERSED_LINES, Quantity
 
 # Upper and lower case of m differ (milli, mega). "MA" is ambiguous and stays unknown.
 _SI_UNITS = {
@@ -21,22 +21,30 @@ _SI_UNITS = {
 _CYRILLIC_PHASES = str.maketrans("АВСавс", "ABCabc")
 """Letters of Cyrillic keyboards that look like those of the phases."""
 
-_PHASES = {"A": "a", "B": "b", "C": "c", "N": "n", "L1": "a", "L2": "b", "L3": "c"}
-_PHASES |= {"R": "a", "S": "b", "T": "c"}
-_LINES = {"AB": "ab", "BC": "bc", "CA": "ca", "L12": "ab", "L23": "bc", "L31": "ca"}
-_LINES |= {"L1L2": "ab", "L2L3": "bc", "L3L1": "ca", "RS": "ab", "ST": "bc", "TR": "ca"}
+_SETS = (("A", "B", "C"), ("R", "S", "T"), ("R", "Y", "B"), ("U", "V", "W"))
+"""Letters of the three phases, recognised together: B is the second of A, B, C and the third of R, Y, B."""
+_PLACES = ("a", "b", "c")
 _NUMBERED = {"1": "a", "2": "b", "3": "c", "12": "ab", "23": "bc", "31": "ca"}
+_L_PHASES = {"L1": "a", "L2": "b", "L3": "c"}
 
-_DERIVED = re.compile(r"mag|ang|rms|thd|dif|rst|harm|freq|pos|neg|zero|seq|spectr", re.IGNORECASE)
+_DERIVED_WORDS = (
+    "mag|magnitude|ang|angle|phase angle|rms|thd|dif|diff|differential|rst|restraint|harm|harmonics?|freq"
+    "|frequency|pos|positive|neg|negative|zero|seq|sequence|spectr|spectrum|spectral"
+)
+_DERIVED = re.compile(rf"(?:[IVU]?[ABCNRSTY]?[0-3]?)(?:{_DERIVED_WORDS})(?:[ABCNRSTY]|[0-3])?", re.IGNORECASE)
 """Words of computed channels: they have a current's unit and name but are no waveform of a terminal."""
+_WORD = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|[A-Z]")
+"""Words of a name: letters up to a change from small ones to capitals, or to anything else."""
 
 _NAME = re.compile(
     r"(?:^|[^A-Za-z0-9])"  # the whole name, or one word of it: "F1-IA", "IA_G1", "Popular Va-g"
     r"(?P<kind>[IVUivu])_?"
-    r"(?P<phase>L?[1-3](?:[-_]?L?[1-3])?|[ABCRSTabcrst]{1,2}|[Nn])"
+    r"(?:(?P<terminal>[ABCabc])(?P<input>[S-Z])[1-4]?(?![A-Za-z0-9])"  # IAW, VAY of relays with terminals
+    r"|(?P<phase>L?[1-3](?:[-_]?L?[1-3])?|[ABCRSTUVWYabcrstuvwy]{1,2}|[Nn]))"
     r"(?:[-_]?[NGEnge])?"  # against neutral or ground
     r"(?![A-Za-z0-9])"
 )
+_AGAINST_EARTH = re.compile(r"(L[1-3]|[A-Z])[NGE]")
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +73,8 @@ def channel_roles(channels: Sequence[tuple[str, str, str]]) -> tuple[ChannelRole
     """Return the roles of the channels of one record.
 
     They are judged together: I1, I2, I3 are phase currents; I1 and I2 beside an I0 are sequence components.
+    IB is the third phase beside IR and IY. VCB counts as a line voltage beside another one: a single VAC may
+    be any AC voltage.
 
     Parameters
     ----------
@@ -76,46 +86,123 @@ def channel_roles(channels: Sequence[tuple[str, str, str]]) -> tuple[ChannelRole
     tuple of ChannelRole
         One role a channel.
     """
-    matches = [_NAME.search(name.translate(_CYRILLIC_PHASES)) for name, _, _ in channels]
-    digits = {(m["kind"].upper(), m["phase"]) for m in matches if m and m["phase"] in _NUMBERED}
-    numbered_kinds = {kind for kind, _ in digits if {(kind, "1"), (kind, "2"), (kind, "3")} <= digits}
+    seen = [_Seen.of(*channel) for channel in channels]
+    numbered = {(one.kind, one.name_code) for one in seen}
+    numbered_kinds = {kind for kind, _ in numbered if {(kind, "1"), (kind, "2"), (kind, "3")} <= numbered}
+    codes = {unit: [code for one in seen if one.unit == unit for code in one.codes] for unit in ("A", "V")}
+    of_all = _lettered([*codes["A"], *codes["V"]], alone=True)
+    phases = {unit: of_all or _lettered(codes[unit]) or _alphabet(_SETS[0]) for unit in codes}
+    found = [_role(one, numbered_kinds, phases.get(one.unit, {})) for one in seen]
+    pairs = {role.phase for role in found if role.quantity is Quantity.LINE_VOLTAGE}
+    alone = len({frozenset(pair) for pair in pairs if pair}) < 2
     return tuple(
-        _role(name, phase_field, unit, match, numbered_kinds)
-        for (name, phase_field, unit), match in zip(channels, matches, strict=True)
+        ChannelRole(Quantity.OTHER, None, role.unit, role.scale)
+        if alone and role.phase in REVERSED_LINES
+        else role
+        for role in found
     )
 
 
-def _role(
-    name: str, phase_field: str, unit: str, match: re.Match[str] | None, numbered_kinds: set[str]
-) -> ChannelRole:
-    si_unit, scale = _SI_UNITS.get(unit, (unit, 1.0))
-    role = ChannelRole(Quantity.OTHER, None, si_unit, scale)
-    if si_unit not in ("A", "V") or _DERIVED.search(name):
+def is_computed(name: str) -> bool:
+    """Tell whether a name says that a relay computed the channel from others: a magnitude, an angle.
+
+    Parameters
+    ----------
+    name : str
+        Name of the channel.
+
+    Returns
+    -------
+    bool
+        Whether one of its words does: "IA RMS", but not "MAGNETIC SEP IA".
+    """
+    return any(_DERIVED.fullmatch(word) for word in _WORD.findall(name))
+
+
+@dataclass(frozen=True, slots=True)
+class _Seen:
+    """What a record says of a channel: SI unit, kind letter, and the codes of its phase in name and field."""
+
+    unit: str
+    scale: float
+    kind: str
+    name_code: str
+    field_code: str
+    is_derived: bool
+    terminal: str = ""
+
+    @classmethod
+    def of(cls, name: str, phase_field: str, unit: str) -> "_Seen":
+        si_unit, scale = _SI_UNITS.get(unit, (unit, 1.0))
+        match = _NAME.search(name.translate(_CYRILLIC_PHASES))
+        if match is None or (match["kind"] in "Ii") != (si_unit == "A"):
+            kind, code, terminal = "", "", ""
+        else:
+            kind = match["kind"].upper()
+            code = re.sub(r"[-_]", "", (match["terminal"] or match["phase"]).upper())
+            terminal = (match["input"] or "").upper()
+        field = re.sub(r"[-_ ./]", "", phase_field.upper().translate(_CYRILLIC_PHASES))
+        if field.isdigit():  # often the input's number, which says nothing
+            field = ""
+        if earthed := _AGAINST_EARTH.fullmatch(field):
+            field = earthed[1]
+        return cls(si_unit, scale, kind, code, field, is_computed(name), terminal)
+
+    @property
+    def codes(self) -> tuple[str, str]:
+        return ("", "") if self.is_derived else (self.name_code, self.field_code)
+
+
+def _lettered(codes: Sequence[str], *, alone: bool = False) -> Mapping[str, str]:
+    """Phases by the set of letters that all codes are of or, unless it must be alone, that is whole."""
+    letters = {letter for code in codes if code.isalpha() for letter in code} - {"N", "G", "E"}
+    covering = [one for one in _SETS if letters and letters <= set(one)]
+    whole = [] if alone else [one for one in _SETS if set(one) <= letters]
+    usual = [one for one in (covering or whole) if one is _SETS[0] or len(letters & set(one)) > 1]
+    fitting = usual or covering
+    if len(fitting) == 1 or (fitting and fitting[0] is _SETS[0]):
+        return _alphabet(fitting[0])
+    agreed = {letter: {one.index(letter) for one in fitting if letter in one} for letter in letters}
+    return {letter: _PLACES[next(iter(at))] for letter, at in agreed.items() if len(at) == 1}
+
+
+def _alphabet(letters: tuple[str, str, str]) -> Mapping[str, str]:
+    return dict(zip(letters, _PLACES, strict=True))
+
+
+def _role(seen: _Seen, numbered_kinds: set[str], letters: Mapping[str, str]) -> ChannelRole:
+    role = ChannelRole(Quantity.OTHER, None, seen.unit, seen.scale)
+    if seen.unit not in ("A", "V") or seen.is_derived:
         return role
-    phase = _agreed(_phase_of_name(match, si_unit, numbered_kinds), _phase_of_field(phase_field))
-    if si_unit == "A":
-        return replace(role, quantity=Quantity.CURRENT, phase=phase if phase in _PHASES.values() else None)
+    name_code = seen.name_code
+    if seen.terminal in letters:  # VBY is of the phase B at the terminals Y, but a line voltage of R, Y, B
+        name_code += seen.terminal
+    if name_code in ("1", "2", "3") and seen.kind not in numbered_kinds:
+        name_code = ""
+    phase = _agreed(_phase(name_code, letters), _phase(seen.field_code, letters))
+    if seen.unit == "A":
+        return replace(role, quantity=Quantity.CURRENT, phase=phase if phase and len(phase) == 1 else None)
     if phase is None:
         return role
-    quantity = Quantity.LINE_VOLTAGE if phase in _LINES.values() else Quantity.PHASE_VOLTAGE
+    quantity = Quantity.LINE_VOLTAGE if len(phase) == 2 else Quantity.PHASE_VOLTAGE
     return replace(role, quantity=quantity, phase=phase)
 
 
-def _phase_of_name(match: re.Match[str] | None, si_unit: str, numbered_kinds: set[str]) -> str | None:
-    if match is None or (match["kind"] in "Ii") != (si_unit == "A"):
+def _phase(code: str, letters: Mapping[str, str]) -> str | None:
+    """Phase of a code, two for a line voltage in either direction; bare numbers have the usual one alone."""
+    if code == "N":
+        return "n"
+    if code in _NUMBERED:
+        return _NUMBERED[code]
+    parts = re.findall(r"L[1-3]", code) if "L" in code else list(code)
+    if code in ("L12", "L23", "L31"):
+        return _NUMBERED[code[1:]]
+    if "".join(parts) != code or len(parts) not in (1, 2):
         return None
-    code = re.sub(r"[-_]", "", match["phase"].upper())
-    if code in ("1", "2", "3") and match["kind"].upper() not in numbered_kinds:
+    phases = [letters.get(part) or _L_PHASES.get(part) for part in parts]
+    if None in phases or len(set(phases)) != len(phases):
         return None
-    return _PHASES.get(code) or _LINES.get(code) or _NUMBERED.get(code)
-
-
-def _phase_of_field(phase_field: str) -> str | None:
-    """Phase of the `ph` field; bare numbers there are often the input's number and say nothing."""
-    code = re.sub(r"[-_ ./]", "", phase_field.upper().translate(_CYRILLIC_PHASES))
-    if code in ("AN", "BN", "CN", "AG", "BG", "CG", "L1N", "L2N", "L3N", "L1E", "L2E", "L3E"):
-        code = code[:-1]
-    return _PHASES.get(code) or _LINES.get(code)
+    return "".join(phase for phase in phases if phase)
 
 
 def _agreed(by_name: str | None, by_field: str | None) -> str | None:

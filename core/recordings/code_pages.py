@@ -4,8 +4,18 @@ COMTRADE before 2013 and Compressed ASCII know no code page; relays write that o
 A wrong guess misspells a name; it never changes a number, a comma or a line: all pages share them with ASCII.
 """
 
+import codecs
 import re
 
+_MARKS = (
+    (codecs.BOM_UTF32_LE, "utf-32"),
+    (codecs.BOM_UTF32_BE, "utf-32"),
+    (codecs.BOM_UTF16_LE, "utf-16"),
+    (codecs.BOM_UTF16_BE, "utf-16"),
+)
+"""Byte order marks; that of UTF-32 begins with that of UTF-16."""
+_NULLS_TOLD_BY = 64
+"""Bytes of a text without a mark by which its encoding is told."""
 _RUN = re.compile(rb"([A-Za-z]?)([\x80-\xff]+)(?=([A-Za-z]?))")
 _HIGH = re.compile(rb"[\x80-\xff]")
 _SAMPLE_BYTES = 1 << 16
@@ -19,10 +29,10 @@ _SURE = 0.7
 def decode_text(content: bytes) -> str:
     """Decode a text whose code page is not known; a byte order mark is taken off.
 
-    Every content has a text: the last resort is Latin-1. UTF-8 is taken where it fits. Else Latin-1 is taken
-    where most letters above ASCII stand singly among ASCII letters, or in twos between them ("Estação"). Else
-    CP1251 or CP866 is taken where runs of such letters are Cyrillic with capitals first; else GBK where all
-    are Chinese characters; else Latin-1.
+    Every content has a text: the last resort is Latin-1. UTF-16 and UTF-32 are told by `wide_encoding`. UTF-8
+    is taken where it fits. Else Latin-1 is taken where most letters above ASCII stand singly among ASCII
+    letters, or in twos between them ("Estação"). Else CP1251 or CP866 is taken where runs of such letters are
+    Cyrillic with capitals first; else GBK where all are Chinese characters; else Latin-1.
 
     Parameters
     ----------
@@ -34,6 +44,8 @@ def decode_text(content: bytes) -> str:
     str
         The text.
     """
+    if wide := wide_encoding(content):
+        return content.decode(wide, errors="replace")
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -54,6 +66,30 @@ def decode_text(content: bytes) -> str:
     if all(_CHINESE.fullmatch(run.decode("gbk", errors="replace")) for run in foreign):
         return content.decode("gb18030", errors="replace")
     return content.decode("latin-1")
+
+
+def wide_encoding(content: bytes) -> str | None:
+    """Tell whether a text has two or four bytes a letter, as programs of Windows save it.
+
+    A byte order mark tells it, or zeros in every other byte and in no byte between.
+
+    Parameters
+    ----------
+    content : bytes
+        The text, or its first bytes.
+
+    Returns
+    -------
+    str or None
+        UTF-16 or UTF-32 as Python names it; None for a text of single bytes.
+    """
+    for mark, encoding in _MARKS:
+        if content.startswith(mark):
+            return encoding
+    even, odd = content[:_NULLS_TOLD_BY:2], content[1:_NULLS_TOLD_BY:2]
+    if odd and not any(odd) and all(even):
+        return "utf-16-le"
+    return "utf-16-be" if odd and not any(even) and all(odd) else None
 
 
 def _cyrillic_share(runs: list[bytes], page: str) -> float:

@@ -2,7 +2,8 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from io import BytesIO
 from pathlib import Path
 from typing import BinaryIO
 
@@ -21,11 +22,14 @@ class DataSection:
         First byte of the part.
     size : int
         Number of bytes.
+    rewritten : bytes or None, optional
+        The whole file in letters of one byte, where it had wider ones; None for the file as it is.
     """
 
     path: Path
     offset: int
     size: int
+    rewritten: bytes | None = field(default=None, repr=False)
 
     @contextmanager
     def opened(self) -> Iterator[BinaryIO]:
@@ -41,7 +45,7 @@ class DataSection:
         OSError
             If the file cannot be read.
         """
-        with self.path.open("rb") as file:
+        with self.path.open("rb") if self.rewritten is None else BytesIO(self.rewritten) as file:
             file.seek(self.offset)
             yield file
 

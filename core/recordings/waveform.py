@@ -9,6 +9,9 @@ from numpy.typing import NDArray
 from core.recordings.errors import UnknownTimeError
 from core.units import NANOSECONDS_PER_SECOND
 
+REVERSED_LINES = {"ba": "ab", "cb": "bc", "ac": "ca"}
+"""Line voltages named the other way round, and those of which they are the negative."""
+
 
 class Quantity(StrEnum):
     """What a channel measures; voltages are told apart by their reference, which Clarke's axes depend on."""
@@ -30,7 +33,8 @@ class Channel:
     quantity : Quantity
         What it measures.
     phase : str or None
-        "a", "b", "c", "n" for phase quantities, "ab", "bc", "ca" for line voltages, None if unknown.
+        "a", "b", "c", "n" for phase quantities, "ab", "bc", "ca" for line voltages, "ba", "cb", "ac" for
+        those recorded the other way round, None if unknown.
     unit : str
         SI unit of the samples after scaling ("A", "V"; otherwise as written in the file).
     full_scale : float or None, optional
@@ -42,6 +46,8 @@ class Channel:
         Ratio by which the values as written were multiplied because the file says that they are secondary.
     is_constant : bool, default False
         Whether the file gives the channel one value whatever was sampled, as recorders do with spare inputs.
+    unit_is_assumed : bool, default False
+        Whether the file has no unit, and that of its quantity is taken for granted.
     """
 
     name: str
@@ -52,6 +58,7 @@ class Channel:
     transformer_ratio: float | None = None
     applied_ratio: float = 1.0
     is_constant: bool = False
+    unit_is_assumed: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -79,7 +79,7 @@ def compressed_table(report: ReportText) -> Table:
     """
     name, encoded = report.name, report.text.encode("latin-1", "replace")
     try:
-        found = list(rows(Path(name), encoded, 0, Repairs(lenient=False)))
+        found = list(rows(Path(name), encoded, 0, len(encoded), Repairs(lenient=False)))
     except RecordingError as error:
         raise ReportError(name, error.field, expected=error.expected, found=error.found) from error
     if any(len(row.fields) == 1 and is_empty(row.fields[0]) for row in found):

@@ -108,6 +108,7 @@ def baseband_of(accepted: Accepted) -> Baseband:
         longest_s=LONGEST_S,
         voltage_ratio=motor.transformers.voltage_ratio,
         current_ratio=motor.transformers.current_ratio,
+        inside_delta=motor.transformers.inside_delta,
     )
     rate, per_cycle = case.sample_rate_hz, case.sample_rate_hz / case.frequency_hz
     current_abc, voltages = whole.current_abc, whole.voltages

@@ -1,5 +1,6 @@
 """The rotor as one record shows it: what was measured, and what follows from it."""
 
+from dataclasses import replace
 from functools import partial
 
 from core.diagnosis.acceptance import Accepted
@@ -11,8 +12,10 @@ from core.rotor.baseband import Baseband
 from core.rotor.finding import RotorFinding, RotorState, decibels, load_bin
 from core.rotor.judgement import judge
 from core.rotor.running_point import running_point, slip_course, without_delay
+from core.rotor.seen_slip import PLACED, at_seen_slip
 from core.rotor.shorted_turns import without_shorted_turns
 from core.rotor.sidebands import sideband_angle
+from core.speed.finding import SpeedFinding
 
 FEWEST_TURNS = 1.5
 """Least distance of the sidebands from the fundamental, in cycles of it over the record."""
@@ -32,7 +35,9 @@ SLIP_TOO_LARGE = (
 )
 
 
-def examine_rotor(recorded: Baseband, accepted: Accepted, diagnosis: Diagnosis) -> RotorFinding:
+def examine_rotor(
+    recorded: Baseband, accepted: Accepted, diagnosis: Diagnosis, speed: SpeedFinding | None = None
+) -> RotorFinding:
     """Tell from one record whether the rotor's cage has broken bars, or a wound rotor a bad contact.
 
     Parameters
@@ -43,6 +48,8 @@ def examine_rotor(recorded: Baseband, accepted: Accepted, diagnosis: Diagnosis) 
         The record, which passed the quality gate.
     diagnosis : Diagnosis
         Its diagnosis, which knows the sensors' delay, and the load beside shorted turns.
+    speed : SpeedFinding or None, optional
+        The record's speed; where it is seen in the current it places the sidebands, else the model does.
 
     Returns
     -------
@@ -58,8 +65,9 @@ def examine_rotor(recorded: Baseband, accepted: Accepted, diagnosis: Diagnosis) 
     fit, ends = diagnosis.fit, diagnosis.mu_f_ci95
     # Turns that cannot be excluded need not be there: what is taken off for them would pass for load.
     if diagnosis.verdict is Verdict.FAULT and fit is not None and ends is not None:
-        at_ends = [without_shorted_turns(baseband, motor, level, fit.path_ratio) for level in ends]
-        baseband = without_shorted_turns(baseband, motor, fit.mu_f, fit.path_ratio)
+        at_ends = [without_shorted_turns(baseband, motor, replace(fit, mu_f=level)) for level in ends]
+        baseband = without_shorted_turns(baseband, motor, fit)
+    as_in_file, motor = motor, at_seen_slip(baseband, motor, speed)
     point = running_point(baseband, motor)
     slip, load_level = point.slip(motor), point.torque_Nm / motor.nameplate.rated_torque_Nm
     if diagnosis.phase is not None and diagnosis.load_level is not None:
@@ -75,6 +83,8 @@ def examine_rotor(recorded: Baseband, accepted: Accepted, diagnosis: Diagnosis) 
     angle = sideband_angle(baseband, slip_course(baseband, motor, slip))
     found = measure_asymmetry(baseband, angle, motor, at_ends)
     state, reasons = judge(found, motor.kind, assumed=case.voltages_assumed, typical=motor.is_typical)
+    if motor is not as_in_file:
+        reasons.append(PLACED)
     if ratios.are_open:
         turns = 2.0 * slip * case.frequency_hz * duration_s
         if found.is_detected and turns * found.ratio >= FEWEST_TURNS_TOLD:

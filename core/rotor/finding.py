@@ -41,7 +41,7 @@ class RotorFinding:
     detection_limit_dB : float or None
         Severity that nine of ten such records show.
     slip : float or None
-        Slip, from the fit of the model.
+        Slip: that seen in the current, else from the fit of the model.
     load_level : float or None
         Load torque over rated torque.
     load_bin : int or None

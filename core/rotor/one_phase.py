@@ -26,7 +26,13 @@ REFERENCES = 10
 """Pairs of lines beyond the search, a cycle over the record apart, that tell the noise."""
 ITERATIONS = 6
 MOST_OF_RATE = 0.45
-"""Highest frequency of a harmonic over the sampling rate."""
+"""Highest frequency of a line over the sampling rate."""
+FEWEST_CYCLES = 4.0
+"""Spikes show against the cycles beside them."""
+LARGEST_SLIP = 0.3
+"""Beyond it a motor starts rather than runs, and its lower sideband nears zero frequency."""
+LEAST_LINE = 0.5
+"""Least share of the line at supply frequency in the rms value of what varies."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,8 +85,10 @@ def one_phase_sidebands(
     Raises
     ------
     SignalError
-        If the record has missing samples, is all zero, or is too short for this slip.
+        If the record has missing samples, is all zero or no alternating current of this frequency, is too
+        short for this slip, or is sampled too slowly for the line and its sidebands.
     """
+    require_rate(sample_rate_hz, slip, rated_frequency_hz)
     duration_s = current.size / sample_rate_hz
     turns = 2.0 * slip * rated_frequency_hz * duration_s
     if not np.isfinite(current).all() or not np.abs(current).max(initial=0.0) > 0.0:
@@ -93,8 +101,17 @@ def one_phase_sidebands(
         )
     samples = np.arange(current.size, dtype=np.float64)
     t: Array = np.asarray((samples - samples.mean()) / sample_rate_hz, dtype=np.float64)
-    cleaned, spikes = without_spikes(current[np.newaxis], sample_rate_hz / rated_frequency_hz)
+    if slip > LARGEST_SLIP:
+        raise SignalError(
+            f"a slip of {slip:.2%} is none of a running motor: expected at most {LARGEST_SLIP:.0%}"
+        )
+    if duration_s * rated_frequency_hz < FEWEST_CYCLES:
+        needed_s = FEWEST_CYCLES / rated_frequency_hz
+        raise SignalError(f"{duration_s:.3f} s are too short: it takes {needed_s:.2f} s")
+    largest = float(np.abs(current).max())  # squares of the largest numbers there are would be infinite
+    cleaned, spikes = without_spikes(current[np.newaxis] / largest, sample_rate_hz / rated_frequency_hz)
     x = cleaned[0]
+    _require_alternating(x)
     f = _frequency(x, t, rated_frequency_hz, sample_rate_hz)
     periodic = _periodic_basis(t, f, sample_rate_hz)
     centre, width = 2.0 * slip * f, min(SEARCH_HZ, slip * f)
@@ -107,6 +124,8 @@ def one_phase_sidebands(
     together = np.hstack([periodic, _pair_basis(t, f, searched[best])])
     solution = np.linalg.lstsq(together, x)[0]
     left, fundamental = x - together @ solution, float(np.hypot(*solution[1:3]))
+    if fundamental < LEAST_LINE * sqrt(2.0) * float(x.std()):
+        raise _no_line(rated_frequency_hz)
     beyond = [last + k / duration_s for k in range(1, REFERENCES + 1)]
     around = np.array([_pair(left, _pair_basis(t, f, one), orthonormal) for one in beyond])
     return OnePhaseSidebands(
@@ -117,6 +136,45 @@ def one_phase_sidebands(
         frequency_hz=f,
         spikes=spikes,
     )
+
+
+def require_rate(sample_rate_hz: float, slip: float, rated_frequency_hz: float) -> None:
+    """Refuse a sampling rate that cannot hold the supply's line and its sidebands.
+
+    Parameters
+    ----------
+    sample_rate_hz : float
+        Sampling rate [Hz].
+    slip : float
+        Slip, from the speed.
+    rated_frequency_hz : float
+        Frequency near which the supply's is [Hz].
+
+    Raises
+    ------
+    SignalError
+        If the rate is too low.
+    """
+    highest_hz = rated_frequency_hz * (1.0 + 2.0 * slip) + min(SEARCH_HZ, slip * rated_frequency_hz)
+    needed_hz = highest_hz / MOST_OF_RATE
+    if sample_rate_hz < needed_hz:
+        raise SignalError(
+            f"a sampling rate of {sample_rate_hz:g} Hz cannot hold the line at {rated_frequency_hz:g} Hz and "
+            f"its upper sideband at up to {highest_hz:.1f} Hz: it takes {needed_hz:.0f} Hz. Is the rate "
+            "given in kHz, are the times in ms, or are these rms values?"
+        )
+
+
+def _require_alternating(x: Array) -> None:
+    if float(x.min()) >= 0.0 or float(x.max()) <= 0.0:
+        raise SignalError(
+            "all samples have one sign: these are rms values or a rectified current, expected the samples of "
+            "the alternating current itself"
+        )
+
+
+def _no_line(near_hz: float) -> SignalError:
+    return SignalError(f"the current has no line near {near_hz:g} Hz: expected that of a running motor")
 
 
 def _frequency(x: Array, t: Array, near_hz: float, sample_rate_hz: float) -> float:
@@ -132,7 +190,7 @@ def _frequency(x: Array, t: Array, near_hz: float, sample_rate_hz: float) -> flo
         step = float(np.linalg.lstsq(np.column_stack([basis, slope]), x)[0][-1])
         f += step
         if not 0.5 * near_hz < f < 1.5 * near_hz:
-            raise SignalError(f"the current has no line near {near_hz:g} Hz")
+            raise _no_line(near_hz)
     return f
 
 
@@ -154,5 +212,6 @@ def _pair_basis(t: Array, f: float, distance_hz: float) -> Array:
 def _pair(x: Array, basis: Array, orthonormal: Array) -> tuple[float, float]:
     """Return the amplitudes of a pair of lines, with what the orthonormal columns span fitted beside them."""
     own = basis - orthonormal @ (orthonormal.T @ basis)
-    solution = np.linalg.solve(own.T @ own, own.T @ x)
+    # A line that harmonics span already has nothing of its own: the smallest solution is none.
+    solution = np.linalg.lstsq(own, x)[0]
     return float(np.hypot(*solution[:2])), float(np.hypot(*solution[2:]))

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from statistics import median
 from typing import NamedTuple
 
-from core.rotor.finding import LOAD_OSCILLATION, RotorState
+from core.rotor.finding import LOAD_OSCILLATION, RotorFinding, RotorState
 
 BASELINE_RECORDS = 3
 """First records of a load bin, whose median is its baseline."""
@@ -202,6 +202,46 @@ def rotor_condition(
         bins=tuple(bins),
         reasons=_reasons(state, latest),
     )
+
+
+def condition_of_findings(findings: Sequence[tuple[int, RotorFinding]]) -> RotorCondition:
+    """Judge the rotor of one motor from the findings of all its records.
+
+    Parameters
+    ----------
+    findings : sequence of (int, RotorFinding)
+        Time of each record, UTC [ns], and what it tells of the rotor, in the order of time.
+
+    Returns
+    -------
+    RotorCondition
+        The condition.
+    """
+    of_bins: dict[int, list[float]] = {}
+    judged: list[JudgedRecord] = []
+    state, since_ns = RotorState.UNSUPPORTED, None
+    counting = [one for one in findings if one[1].severity_dB is not None and one[1].load_bin is not None]
+    for _, finding in counting:
+        of_bins.setdefault(finding.load_bin or 0, []).append(finding.severity_dB or 0.0)
+    baselines = {load_bin: baseline_dB(levels) for load_bin, levels in of_bins.items()}
+    seen = dict.fromkeys(of_bins, 0)
+    for time_ns, finding in counting:
+        load_bin = finding.load_bin or 0
+        seen[load_bin] += 1
+        judged.append(
+            JudgedRecord(
+                finding.state,
+                finding.severity_dB or 0.0,
+                finding.severity_dB_ci95 or (0.0, 0.0),
+                baselines[load_bin] if seen[load_bin] > BASELINE_RECORDS else None,
+                any(reason.startswith(LOAD_OSCILLATION) for reason in finding.reasons),
+            )
+        )
+        now = state_after(judged[-LATEST_RECORDS:])
+        if now is not state:
+            state, since_ns = now, time_ns
+    bins = [LoadBin(one, len(of_bins[one]), baselines[one]) for one in sorted(of_bins)]
+    return rotor_condition(judged[-LATEST_RECORDS:], since_ns, bins)
 
 
 def _reasons(state: RotorState, latest: Sequence[JudgedRecord]) -> tuple[str, ...]:

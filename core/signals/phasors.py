@@ -33,6 +33,9 @@ LARGEST_PHASOR = 1e307
 SMALLEST_SIZE = 1e-300
 """Least amplitude of samples; below it they are nothing."""
 
+USUAL_SEARCH_HZ = (20.0, 120.0)
+"""Where no motor says better: the mains of 50 and 60 Hz, and supplies that are off by far."""
+
 _MAX_ITERATIONS = 12
 _CONVERGED_CYCLES = 1e-8
 """Change of the whole record's phase at which the iteration stops [cycles]; far below any noise."""
@@ -119,7 +122,7 @@ def fundamental_phasors(
 
 
 def fundamental_frequency(
-    v_ab: NDArray[np.float64], sample_rate_hz: float, *, search_hz: tuple[float, float] = (20.0, 120.0)
+    v_ab: NDArray[np.float64], sample_rate_hz: float, *, search_hz: tuple[float, float] = USUAL_SEARCH_HZ
 ) -> float:
     """Estimate the fundamental frequency of a three-phase supply.
 

@@ -99,7 +99,7 @@ def lines_of_a_motor(
     *,
     slip: float | None = None,
     pole_pairs: int | None = None,
-    rotor_slots: int | None = None,
+    rotor_bars: int | None = None,
 ) -> tuple[SpectralLine, ...]:
     """Return the lines that matter in the stator current, by frequency.
 
@@ -113,7 +113,7 @@ def lines_of_a_motor(
         Slip; None where the speed is not known. Without it there are harmonics alone.
     pole_pairs : int or None, optional
         Number of pole pairs.
-    rotor_slots : int or None, optional
+    rotor_bars : int or None, optional
         Number of rotor slots; None where it is not known.
 
     Returns
@@ -137,8 +137,8 @@ def lines_of_a_motor(
             SpectralLine((1.0 + sign * 2.0 * slip) * f, label, "broken rotor bars, or a load that swings")
             for sign, label in ((-1.0, "(1−2s)f"), (1.0, "(1+2s)f"))
         ]
-    if slip is not None and isfinite(slip) and pole_pairs and rotor_slots:
-        turning = rotor_slots * (1.0 - slip) / pole_pairs
+    if slip is not None and isfinite(slip) and pole_pairs and rotor_bars:
+        turning = rotor_bars * (1.0 - slip) / pole_pairs
         lines += [
             SpectralLine(abs(turning + order) * f, label, "the rotor's slots")
             for order, label in ((-1.0, "slots −f"), (1.0, "slots +f"))

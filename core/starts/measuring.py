@@ -60,6 +60,7 @@ def measure_start(recording: Recording, motor: Motor) -> MotorStart:
         line_voltages=motor.channels.line_voltages,
         voltage_ratio=motor.transformers.voltage_ratio,
         current_ratio=motor.transformers.current_ratio,
+        inside_delta=motor.transformers.inside_delta,
     )
     per_cycle = measured.sample_rate_hz / motor.nameplate.rated_frequency_Hz
     _check(recording.source, measured, per_cycle)

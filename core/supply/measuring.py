@@ -72,10 +72,11 @@ def measure_supply(recording: Recording, motor: Motor) -> SupplyFigures:
         longest_s=LONGEST_S,
         voltage_ratio=motor.transformers.voltage_ratio,
         current_ratio=motor.transformers.current_ratio,
+        inside_delta=motor.transformers.inside_delta,
     )
     voltage_ab = _voltages(recording.source, measured, nameplate)
     rate = measured.sample_rate_hz
-    found = _harmonics(recording.source, voltage_ab, measured.current_abc, rate)
+    found = _harmonics(recording.source, voltage_ab, measured.current_abc, rate, nameplate)
     volts, amps = found.phasors[:3], found.phasors[3:]
     lines_V = np.abs(volts[:, 0])
     if lines_V.mean() < NO_VOLTAGE * nameplate.rated_voltage_V:
@@ -129,11 +130,15 @@ def _voltages(source: str, measured: Terminals, nameplate: Nameplate) -> Array:
     return measured.voltage_ab
 
 
-def _harmonics(source: str, voltage_ab: Array, current_abc: Array, rate_hz: float) -> Harmonics:
+def _harmonics(
+    source: str, voltage_ab: Array, current_abc: Array, rate_hz: float, nameplate: Nameplate
+) -> Harmonics:
     """Fit the harmonics of the line voltages ab, bc, ca and of the line currents."""
     samples = max(1, round(FREQUENCY_FROM_S * rate_hz))
     try:
-        frequency_hz = fundamental_frequency(voltage_ab[:, -samples:], rate_hz)
+        frequency_hz = fundamental_frequency(
+            voltage_ab[:, -samples:], rate_hz, search_hz=nameplate.frequency_range_Hz
+        )
     except SignalError as error:
         raise NoSupplyError(source, "voltages", expected="those of a supply", found=str(error)) from error
     cycles = voltage_ab.shape[1] * frequency_hz / rate_hz

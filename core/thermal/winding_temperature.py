@@ -10,7 +10,7 @@ What is left of them makes the interval.
 from dataclasses import dataclass, fields, replace
 from math import hypot, pi, sqrt
 
-from core.condition.measuring.measurement import negative_impedance
+from core.condition.measuring.impedance import negative_impedance
 from core.condition.observation import Observation
 from core.machines.parameters import MachineParameters, Motor, ParameterTolerances
 
@@ -146,7 +146,7 @@ def _variance(observation: Observation, reference: Observation, motor: Motor) ->
     sensor = hypot(
         motor.sensors.voltage_deviation(frequency_hz), motor.sensors.current_deviation(frequency_hz)
     ) / sqrt(3.0)  # of the mean of three channels
-    noise = sqrt(_noise(observation, machine) + _noise(reference, machine))
+    noise = sqrt(_noise(observation, motor) + _noise(reference, motor))
     wander = hypot(SENSORS_WANDER * sensor, noise)
     # Each: what a relative step of one cause makes, and the deviation of the cause.
     stepped: list[tuple[float | None, float]] = []
@@ -166,10 +166,10 @@ def _variance(observation: Observation, reference: Observation, motor: Motor) ->
     return total
 
 
-def _noise(observation: Observation, machine: MachineParameters) -> float:
+def _noise(observation: Observation, motor: Motor) -> float:
     """Return an upper bound of the relative variance of Z1 from the record's own noise.
 
     The scatter of y = V2/V1 - Z2 I2/V1 is that of both voltages and currents, over V1.
     """
-    Z2 = negative_impedance(machine, observation.frequency_hz)
+    Z2 = negative_impedance(motor, observation.frequency_hz)
     return observation.scatter * (1.0 + abs(_impedance(observation) / Z2) ** 2)

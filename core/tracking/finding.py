@@ -35,7 +35,7 @@ class DriftCause(StrEnum):
     WINDING_HOT = "winding-hot"
     """Both resistances are higher than the load's heat explains: cooling, or a hot place."""
     RATIO = "ratio"
-    """All impedances by one factor: the ratio of a current or voltage transformer is another."""
+    """All impedances by one factor: a CT or VT ratio changed."""
     MAGNETISING = "magnetising"
     """The magnetising inductance alone: the iron or the air gap."""
     LEAKAGE = "leakage"
@@ -51,9 +51,9 @@ class DriftCause(StrEnum):
 
 _CAUSES = {
     DriftCause.WINDING_HOT: "the windings are hotter than their load explains",
-    DriftCause.RATIO: "the ratio of a current or voltage transformer is another",
-    DriftCause.MAGNETISING: "the magnetising inductance is another",
-    DriftCause.LEAKAGE: "the leakage is another",
+    DriftCause.RATIO: "a CT or VT ratio changed",
+    DriftCause.MAGNETISING: "the magnetising inductance changed",
+    DriftCause.LEAKAGE: "the leakage inductance changed",
     DriftCause.ROTOR: "the cage has a higher resistance",
 }
 

@@ -15,7 +15,7 @@ from typing import Final
 import numpy as np
 
 from core.condition.errors import ObservationError
-from core.condition.measuring.measurement import check
+from core.condition.measuring.bounds import check
 from core.condition.observation import Observation
 from core.machines.base import Array
 from core.machines.parameters import Motor

@@ -75,6 +75,12 @@ class Cage:
         half_pitch = pi * pole_pairs / self.bars
         return parameters.magnetising_inductance_H * ((half_pitch / sin(half_pitch)) ** 2 - 1)
 
+    def bar_and_ring(self, of_phase: float, pole_pairs: int) -> tuple[float, float]:
+        """Return what a bar and a segment of a ring have of a phase's resistance or leakage, in its unit."""
+        per_phase = 3 * (pi * pole_pairs) ** 2 / self.bars
+        ring = 2 * sin(pi * pole_pairs / self.bars) ** 2
+        return (1 - self.ring_share) * of_phase / per_phase, self.ring_share * of_phase / per_phase * ring
+
 
 USUAL_CAGE = Cage()
 
@@ -134,18 +140,14 @@ def _bar_loops(
     """Return all loops between bars that are not broken."""
     N = cage.bars
     half_pitch = pi * pole_pairs / N
-    per_phase = 3 * (pi * pole_pairs) ** 2 / N
-    ring = 2 * sin(half_pitch) ** 2
     own_leakage = parameters.rotor_leakage_H - cage.spread_leakage(parameters, pole_pairs)
     if own_leakage <= 0:
         raise ValueError(
             f"{N} bars are too few for {pole_pairs} pole pairs and a rotor leakage of "
             f"{parameters.rotor_leakage_H:g} H: the leakage of their steps in the field alone is larger"
         )
-    R_b = (1 - cage.ring_share) * parameters.rotor_resistance_ohm / per_phase
-    R_e = cage.ring_share * parameters.rotor_resistance_ohm / per_phase * ring
-    L_b = (1 - cage.ring_share) * own_leakage / per_phase
-    L_e = cage.ring_share * own_leakage / per_phase * ring
+    R_b, R_e = cage.bar_and_ring(parameters.rotor_resistance_ohm, pole_pairs)
+    L_b, L_e = cage.bar_and_ring(own_leakage, pole_pairs)
 
     whole = lost_conductance < 1
     joined = np.eye(whole.sum())[(np.cumsum(whole) - 1) % whole.sum()]

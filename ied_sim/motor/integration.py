@@ -5,7 +5,7 @@ load torque are known functions of time, given at the middle of the steps too; p
 depend on the rotor's angle beside it.
 """
 
-from math import cos, sin, sqrt
+from math import atan, cos, sin, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -15,14 +15,18 @@ from ied_sim.motor.compiled import compiled
 
 Array = NDArray[np.float64]
 
+ROUNDS_OF_SATURATION = 3
+"""Each brings the inductances nearer to those of their own current; the currents of the step before are
+near."""
+
 
 class Loops(NamedTuple):
     """Loop matrices of the winding circuit, see `windings`, and what turns with its rotor.
 
     Parameters
     ----------
-    leakage : ndarray, shape (m, m)
-        Inductance of the leakage [H].
+    leakage, deep_leakage : ndarray, shape (m, m)
+        Inductance of the leakage that crosses the teeth's tips, and of that which does not [H].
     A, B, D : ndarray, shape (m, m)
         Parts of the inductance of the air-gap field, P (A + B cos(theta) + D sin(theta)) [H], with P the
         gap's relative permeance.
@@ -34,9 +38,21 @@ class Loops(NamedTuple):
         Moment of inertia of motor and load [kg m^2].
     static, dynamic : float
         Eccentricities, see `eccentricity`.
+    stator_current : ndarray, shape (2, m)
+        The stator's current on the axes of the field.
+    saturation, knee : float
+        Part of the leakage that is lost at great currents, and the current at which it begins [A]; see
+        `deep_bars`.
+    rotor_current : ndarray, shape (2, m)
+        The rotor's current on its own axes.
+    main_share, main_exponent : float
+        Share and exponent of the saturation of the main inductance; see `saturation`.
+    flux_per_current : float
+        Flux of the air gap over its rated one, per magnetising current [1/A].
     """
 
     leakage: Array
+    deep_leakage: Array
     A: Array
     B: Array
     D: Array
@@ -45,6 +61,13 @@ class Loops(NamedTuple):
     inertia: float
     static: float
     dynamic: float
+    stator_current: Array
+    saturation: float
+    knee: float
+    rotor_current: Array
+    main_share: float
+    main_exponent: float
+    flux_per_current: float
 
 
 class Drive(NamedTuple):
@@ -113,17 +136,57 @@ def _permeance(loops: Loops, angle: float) -> tuple[float, float]:
 
 
 @compiled
-def _loop_currents(loops: Loops, angle: float, state: Array, matrix: Array, q: Array) -> None:
-    """Solve L(theta) q = flux for the loop currents q."""
-    leakage, A, B, D = loops.leakage, loops.A, loops.B, loops.D
+def _unsaturated(loops: Loops, q: Array) -> float:
+    """Return the leakage at loop currents q over that at small ones."""
+    alpha = beta = 0.0
+    for i in range(q.size):
+        alpha += loops.stator_current[0, i] * q[i]
+        beta += loops.stator_current[1, i] * q[i]
+    x = sqrt(alpha * alpha + beta * beta) / loops.knee
+    if x < 1e-6:
+        return 1.0
+    return 1.0 - loops.saturation + loops.saturation * atan(x) / x
+
+
+@compiled
+def _main_share(loops: Loops, c: float, s: float, before: float, q: Array) -> float:
+    """Return the main inductance at loop currents q over that at rated flux, from an estimate `before`."""
+    alpha = beta = d = e = 0.0
+    for i in range(q.size):
+        alpha += loops.stator_current[0, i] * q[i]
+        beta += loops.stator_current[1, i] * q[i]
+        d += loops.rotor_current[0, i] * q[i]
+        e += loops.rotor_current[1, i] * q[i]
+    alpha += c * d - s * e
+    beta += s * d + c * e
+    flux = before * loops.flux_per_current * sqrt(alpha * alpha + beta * beta)
+    needed: float = 1.0 - loops.main_share + loops.main_share * flux ** (loops.main_exponent - 1.0)
+    return 1.0 / needed
+
+
+@compiled
+def _loop_currents(loops: Loops, angle: float, state: Array, matrix: Array, q: Array) -> float:
+    """Solve L(theta, q) q = flux for the loop currents q, which hold an estimate of them.
+
+    Returns the main inductance over that at rated flux.
+    """
     m = q.size
     c, s = cos(angle), sin(angle)
-    P, _ = _permeance(loops, angle)
-    for i in range(m):
-        q[i] = state[i]
-        for j in range(i + 1):
-            matrix[i, j] = leakage[i, j] + P * (A[i, j] + B[i, j] * c + D[i, j] * s)
-    _solve_symmetric(matrix, q)
+    gap_permeance, _ = _permeance(loops, angle)
+    rounds = 1 if loops.saturation == 0.0 and loops.main_share == 0.0 else ROUNDS_OF_SATURATION
+    main = 1.0
+    for _ in range(rounds):
+        if loops.main_share != 0.0:
+            main = _main_share(loops, c, s, main, q)
+        P = gap_permeance * main
+        share = 1.0 if loops.saturation == 0.0 else _unsaturated(loops, q)
+        for i in range(m):
+            q[i] = state[i]
+            for j in range(i + 1):
+                gap = P * (loops.A[i, j] + loops.B[i, j] * c + loops.D[i, j] * s)
+                matrix[i, j] = share * loops.leakage[i, j] + loops.deep_leakage[i, j] + gap
+        _solve_symmetric(matrix, q)
+    return main
 
 
 @compiled
@@ -150,7 +213,8 @@ def _derivative(
     c, s = cos(angle), sin(angle)
     P, slope = _permeance(loops, angle)
     slope /= loops.pole_pairs
-    _loop_currents(loops, angle, state, work, q)
+    main = _loop_currents(loops, angle, state, work, q)
+    P, slope = P * main, slope * main
     torque = 0.0
     for i in range(m):
         drop = 0.0
@@ -195,7 +259,7 @@ def integrate(loops: Loops, drive: Drive, steps_per_sample: int, state: Array) -
     currents = np.empty((samples, m))
     speed = np.empty(samples)
     work = np.empty((m, m))
-    q = np.empty(m)
+    q = np.zeros(m)
     trial = np.empty(m + 2)
     k1, k2, k3, k4 = np.empty(m + 2), np.empty(m + 2), np.empty(m + 2), np.empty(m + 2)
 

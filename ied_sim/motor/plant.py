@@ -16,17 +16,21 @@ from core.machines.parameters import Motor
 from ied_sim.motor.cage import USUAL_CAGE, Cage, cage_loops
 from ied_sim.motor.contactor import Closure, Contactor
 from ied_sim.motor.course import Points, value_at
+from ied_sim.motor.deep_bars import UNSATURATED, DeepBars, LeakageSaturation
 from ied_sim.motor.driving import drive
 from ied_sim.motor.eccentricity import CENTRED, Eccentricity
-from ied_sim.motor.fault import NEGLIGIBLE_LEVEL, FaultCourse, TurnFault
+from ied_sim.motor.fault import FaultCourse, TurnFault
+from ied_sim.motor.feeder import MOTOR_ALONE, Feeder
 from ied_sim.motor.integration import Loops, integrate
 from ied_sim.motor.interpolation import MARGIN, interpolated
 from ied_sim.motor.joint import JointCourse
 from ied_sim.motor.load import Load
 from ied_sim.motor.rotor import RotorLoops, three_coils
 from ied_sim.motor.running_state import RunningMotor
+from ied_sim.motor.saturation import LINEAR_IRON, MainSaturation, flux_per_current
 from ied_sim.motor.sensors import Sensors
 from ied_sim.motor.slip_rings import SlipRings, sections
+from ied_sim.motor.slots import SlotWinding
 from ied_sim.motor.supply import Supply
 from ied_sim.motor.trajectory import Trajectory
 from ied_sim.motor.warming import COLD, ResistanceFactors, Warming
@@ -74,7 +78,10 @@ class MotorPlant:
     course over time, and `joint` a bad one in a line. The rotor's angle is random at the beginning of each
     window, and with it the phase of all that turns with it, unless the window goes on from an earlier one's
     `trajectory`. The contactor connects the motor, which then starts from rest; with None the motor always
-    runs. `slip_rings` are those of a wound rotor, which has no bars.
+    runs. `slip_rings` are those of a wound rotor, which has no bars. A fault in a coil needs the `winding` by
+    its slots. `deep_bars` and `leakage_saturation` make a start another motor's than the running one, and
+    `main_saturation` lets the main inductance follow the voltage. The `feeder` holds what else lies behind
+    the relay's transformers.
     """
 
     motor: Motor
@@ -91,6 +98,11 @@ class MotorPlant:
     eccentricity: Eccentricity = CENTRED
     trajectory: Trajectory | None = None
     slip_rings: SlipRings | None = None
+    winding: SlotWinding | None = None
+    deep_bars: DeepBars | None = None
+    leakage_saturation: LeakageSaturation = UNSATURATED
+    main_saturation: MainSaturation = LINEAR_IRON
+    feeder: Feeder = MOTOR_ALONE
 
     def window(
         self, start_s: float, duration_s: float, sample_rate_hz: float, *, step_rate_hz: float = STEP_RATE_HZ
@@ -200,9 +212,32 @@ class MotorPlant:
         for closure in closures:
             here = self._connected(closure, begin_s, samples, sample_rate_hz, settling_s, step_rate_hz)
             first, line_currents, turning = here
-            currents[:, first : first + turning.size] = line_currents
-            speed[first : first + turning.size] = turning
+            connected = slice(first, first + turning.size)
+            currents[:, connected] = line_currents
+            speed[connected] = turning
+            if turning.size and not self.feeder.inside_delta:
+                times = begin_s + np.arange(first, first + turning.size) / sample_rate_hz
+                currents[:, connected] += self.feeder.currents(self.supply, self.motor.nameplate, times)
+        beside = self._other_motor()
+        if beside is not None and not self.feeder.inside_delta:
+            length_s = samples / sample_rate_hz
+            currents += beside.operation(
+                begin_s, length_s, sample_rate_hz, settling_s=settling_s, step_rate_hz=step_rate_hz
+            ).currents_A
         return currents, speed
+
+    def _other_motor(self) -> "MotorPlant | None":
+        """Return the other motor behind the transformers, on the same supply, with a contactor of its own."""
+        other = self.feeder.other_motor
+        if other is None:
+            return None
+        contactor = None
+        if other.since_s > -inf:
+            contactor = Contactor(open_at_first=True)
+            contactor.close(other.since_s)
+        return MotorPlant(
+            other.motor, self.supply, other.load, self.sensors, seed=self.seed + 1, contactor=contactor
+        )
 
     def _connected(
         self,
@@ -292,7 +327,7 @@ class MotorPlant:
             return None
         fault = self.fault.at(time_s)
         level = fault.equivalent_level(self.motor.parameters.stator_resistance_ohm)
-        return fault if level > NEGLIGIBLE_LEVEL else None
+        return fault if level > fault.negligible_level else None
 
     def broken_share(self, time_s: float) -> float:
         """Return the share of the bars that are broken at one moment."""
@@ -307,7 +342,7 @@ class MotorPlant:
             outside = self.slip_rings.added_resistance(time_s, time_s - closed_s)
             return replace(three_coils(parameters), outside=outside)
         if broken == 0:
-            return three_coils(parameters)
+            return three_coils(parameters) if self.deep_bars is None else self.deep_bars.loops(parameters)
         return cage_loops(parameters, self.motor.nameplate.pole_pairs, self.cage, broken)
 
     def circuit(self, time_s: float, closed_s: float = -inf) -> WindingCircuit:
@@ -315,13 +350,18 @@ class MotorPlant:
         line_ohm = [0.0, 0.0, 0.0]
         if self.joint is not None:
             line_ohm[self.joint.phase] = self.joint.resistance_ohm(time_s)
+        cable = self.feeder.cable
+        line_ohm = [one + cable.resistance_ohm for one in line_ohm]
         return winding_circuit(
-            self.motor.parameters,
-            self.motor.nameplate.connection,
+            self.motor,
             self.fault_at(time_s),
+            winding=self.winding,
+            harmonic_cage=self.cage,
             rotor=self.rotor(time_s, closed_s),
             resistance_factors=self.resistance_factors(time_s),
             line_resistance_ohm=(line_ohm[0], line_ohm[1], line_ohm[2]),
+            line_inductance_H=cable.reactance_ohm / self.motor.nameplate.rated_angular_frequency,
+            neutral=self.feeder.neutral,
         )
 
     def resistance_factors(self, time_s: float) -> ResistanceFactors:
@@ -357,6 +397,7 @@ class MotorPlant:
         driven = drive(circuit, self.supply, self.load, nameplate, times, step)
         loops = Loops(
             circuit.leakage,
+            circuit.deep_leakage,
             circuit.constant,
             circuit.cosine,
             circuit.sine,
@@ -365,8 +406,17 @@ class MotorPlant:
             self.inertia_kgm2,
             self.eccentricity.static,
             self.eccentricity.dynamic,
+            circuit.stator_current,
+            self.leakage_saturation.share,
+            self.leakage_saturation.knee_A,
+            circuit.rotor_current,
+            self.main_saturation.share,
+            self.main_saturation.exponent,
+            flux_per_current(self.motor),
         )
         currents, speed = integrate(loops, driven, steps_per_sample, state)
+        if self.feeder.inside_delta:
+            return np.ascontiguousarray(currents[:, :3].T), speed
         return circuit.line_currents(currents), speed
 
     def _running_state(self, circuit: WindingCircuit, time_s: float) -> Array:

@@ -33,6 +33,8 @@ class RotorLoops:
         Share of each loop's field on the rotor's two axes; (1, 0) is a coil of a phase's turns on the first.
     outside : ndarray, shape (m, m), optional
         Resistance at the ends of a wound rotor, which does not warm up with it [ohm].
+    deep_leakage : ndarray, shape (m, m), optional
+        Inductance of leakage that does not cross the teeth's tips, beside `leakage` [H].
     """
 
     leakage: Matrix
@@ -40,6 +42,7 @@ class RotorLoops:
     resistance: Matrix
     axes: Matrix
     outside: Matrix | None = None
+    deep_leakage: Matrix | None = None
 
 
 def three_coils(parameters: MachineParameters) -> RotorLoops:

@@ -1,9 +1,10 @@
 """The motor as a circuit of coupled windings in phase variables.
 
 Every winding is a coil with a number of turns (a fraction of the phase's), an axis, a resistance and a
-leakage of its own. A shorted phase is two coils in series on one axis: mu of the turns, bridged by the fault
-path, and 1 - mu of them. The cage is three coils on axes that turn with the rotor. Nothing is transformed:
-coils couple by the cosine of the angle between their axes,
+leakage of its own. A shorted phase is two coils in series: mu of the turns, bridged by the fault path, and
+1 - mu of them, on one axis or, in a winding by slots, with the axis and the leakage of the coil that they are
+part of (`stator`). The cage is three coils on axes that turn with the rotor. Nothing is transformed: coils
+couple by the cosine of the angle between their axes,
 
     L_ij = L_s N_i N_j cos(axis_i - axis_j)  +  leakage_i  where i = j,
 
@@ -25,15 +26,15 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from core.machines.parameters import Connection, MachineParameters
+from core.machines.parameters import MachineParameters, Motor
+from ied_sim.motor.cage import USUAL_CAGE, Cage
 from ied_sim.motor.fault import NEGLIGIBLE_LEVEL, TurnFault
-from ied_sim.motor.rotor import FLOATING_POINT, PHASE_AXES, RotorLoops, three_coils
+from ied_sim.motor.rotor import RotorLoops, three_coils
+from ied_sim.motor.slots import SlotWinding
+from ied_sim.motor.stator import phase_loops, slot_loops
 from ied_sim.motor.warming import COLD, ResistanceFactors
 
 Matrix = NDArray[np.float64]
-
-# Terminal voltages of the delta's windings: a to b, b to c, c to a.
-_LINE_TO_LINE = np.array([[1.0, -1.0, 0.0], [0.0, 1.0, -1.0], [-1.0, 0.0, 1.0]])
 
 
 @dataclass(frozen=True)
@@ -43,21 +44,30 @@ class WindingCircuit:
     Parameters
     ----------
     leakage : ndarray, shape (m, m)
-        Inductance of the leakage [H].
+        Inductance of the leakage that crosses the teeth's tips [H].
+    deep_leakage : ndarray, shape (m, m)
+        Inductance of the leakage that does not [H].
     constant, cosine, sine : ndarray, shape (m, m)
         A, B and D, the inductance of the air-gap field [H].
     resistance : ndarray, shape (m, m)
         R [ohm].
     drive : ndarray, shape (m, 3)
         E, voltage around each loop for the three terminal voltages.
+    stator_current : ndarray, shape (2, m)
+        The stator's current on the two axes of the field, of the amplitude of a phase's.
+    rotor_current : ndarray, shape (2, m)
+        The rotor's current on the two axes that turn with it, alike.
     """
 
     leakage: Matrix
+    deep_leakage: Matrix
     constant: Matrix
     cosine: Matrix
     sine: Matrix
     resistance: Matrix
     drive: Matrix
+    stator_current: Matrix
+    rotor_current: Matrix
 
     @property
     def loops(self) -> int:
@@ -67,7 +77,7 @@ class WindingCircuit:
     def inductance(self, angle_rad: float) -> Matrix:
         """Return L(theta) at the electrical rotor angle `angle_rad`, shape (m, m) [H]."""
         gap = self.constant + self.cosine * np.cos(angle_rad) + self.sine * np.sin(angle_rad)
-        inductance: Matrix = self.leakage + gap
+        inductance: Matrix = self.leakage + self.deep_leakage + gap
         return inductance
 
     def line_currents(self, loop_currents: Matrix) -> Matrix:
@@ -91,26 +101,32 @@ def highest_fault_resistance(parameters: MachineParameters, fastest_rate: float)
 
 
 def winding_circuit(
-    parameters: MachineParameters,
-    connection: Connection,
+    motor: Motor,
     fault: TurnFault | None = None,
     *,
+    winding: SlotWinding | None = None,
+    harmonic_cage: Cage = USUAL_CAGE,
     rotor: RotorLoops | None = None,
     resistance_factors: ResistanceFactors = COLD,
     line_resistance_ohm: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    line_inductance_H: float = 0.0,
+    neutral: bool = False,
 ) -> WindingCircuit:
     """Build the loops of a motor, healthy or with a part of one phase bridged.
 
-    With `fault` None or of no turns there is no fault loop at all, so a healthy motor is exactly that.
+    With `fault` None or of no turns there is no fault loop at all, so a healthy motor is exactly that: how
+    its coils lie in slots does not matter then.
 
     Parameters
     ----------
-    parameters : MachineParameters
-        Parameters of the motor.
-    connection : Connection
-        Star or delta.
+    motor : Motor
+        The motor.
     fault : TurnFault, optional
-        The bridged turns.
+        The bridged turns: of a coil where it names one, else on the phase's axis.
+    winding : SlotWinding, optional
+        The winding by its slots, which a fault in a coil needs.
+    harmonic_cage : Cage, optional
+        Bars that answer the field's other orders; see `coils_of`.
     rotor : RotorLoops, optional
         The rotor's loops; None for the three coils of a healthy one.
     resistance_factors : ResistanceFactors
@@ -118,62 +134,58 @@ def winding_circuit(
     line_resistance_ohm : tuple of float
         Resistance in the lines to terminals a, b, c, as of bad joints. The line currents are E' q, so it adds
         E diag(r) E' to the loops' resistance.
+    line_inductance_H : float, default 0.0
+        Inductance in each line, as of a cable [H].
+    neutral : bool, default False
+        Whether the star point is on the neutral.
 
     Returns
     -------
     WindingCircuit
         The loops.
+
+    Raises
+    ------
+    ValueError
+        If a fault is in a coil that the winding has not.
     """
     if fault is not None and fault.turns == 0:
         fault = None
+    parameters = motor.parameters
+    if fault is not None and fault.coil is not None:
+        if winding is None:
+            raise ValueError("the fault is in a coil, and the motor's winding is not known by its slots")
+        stator = slot_loops(motor, winding, fault, harmonic_cage, neutral=neutral)
+    else:
+        stator = phase_loops(parameters, motor.nameplate.connection, fault, neutral=neutral)
     if rotor is None:
         rotor = three_coils(parameters)
-    phases = FLOATING_POINT if connection is Connection.STAR else np.eye(3)
-    drive = FLOATING_POINT.T if connection is Connection.STAR else _LINE_TO_LINE
-
-    turns, axes, rows = [], [], []
-    for phase in range(3):
-        shares = [1.0] if fault is None or fault.phase != phase else [1 - fault.turns, fault.turns]
-        for share in shares:
-            turns.append(share)
-            axes.append(PHASE_AXES[phase])
-            rows.append(phases[phase])
-
-    stator_loops = phases.shape[1]
-    stator = stator_loops + (0 if fault is None else 1)
-    incidence = np.zeros((len(turns), stator))
-    incidence[:, :stator_loops] = rows
-    if fault is not None:
-        # The fault path takes its current away from the bridged turns, the second coil of its phase.
-        incidence[fault.phase + 1, stator_loops] = -1.0
-
-    N, axis = np.array(turns), np.array(axes)
     L_s = parameters.stator_self_inductance_H
-    own = incidence.T @ np.diag(N) @ incidence
-    coupling = L_s * np.outer(N, N) * np.cos(np.subtract.outer(axis, axis))
+    m = len(stator.drive)
     # The rotor's axes lead by theta: a coil and a rotor loop couple by cos(axis - theta) on the first axis of
     # the rotor and by sin(axis - theta) on the second.
-    on_stator = incidence.T @ (L_s * N * np.vstack((np.cos(axis), np.sin(axis)))).T
+    on_stator = L_s * stator.axes.T
     across = np.array([[0.0, -1.0], [1.0, 0.0]])
 
-    loop_drive = np.zeros((stator + rotor.axes.shape[1], 3))
-    loop_drive[:stator_loops] = drive
+    drive = np.vstack((stator.drive, np.zeros((rotor.axes.shape[1], 3))))
     resistance = _diagonal(
-        resistance_factors.stator * parameters.stator_resistance_ohm * own,
+        resistance_factors.stator * stator.resistance + stator.path,
         resistance_factors.rotor * rotor.resistance,
     )
     if rotor.outside is not None:
-        resistance[stator:, stator:] += rotor.outside
-    if fault is not None:
-        resistance[stator_loops, stator_loops] += fault.resistance_ohm
-    resistance += loop_drive @ np.diag(line_resistance_ohm) @ loop_drive.T
+        resistance[m:, m:] += rotor.outside
+    resistance += drive @ np.diag(line_resistance_ohm) @ drive.T
+    deep = np.zeros_like(rotor.leakage) if rotor.deep_leakage is None else rotor.deep_leakage
     return WindingCircuit(
-        leakage=_diagonal(parameters.stator_leakage_H * own, rotor.leakage),
-        constant=_diagonal(incidence.T @ coupling @ incidence, rotor.gap),
+        leakage=_diagonal(stator.leakage, rotor.leakage),
+        deep_leakage=_diagonal(np.zeros((m, m)), deep) + line_inductance_H * drive @ drive.T,
+        constant=_diagonal(on_stator @ stator.axes, rotor.gap),
         cosine=_off_diagonal(on_stator @ rotor.axes),
         sine=_off_diagonal(on_stator @ across @ rotor.axes),
         resistance=resistance,
-        drive=loop_drive,
+        drive=drive,
+        stator_current=2.0 / 3.0 * np.hstack((stator.axes, np.zeros_like(rotor.axes))),
+        rotor_current=2.0 / 3.0 * np.hstack((np.zeros_like(stator.axes), rotor.axes)),
     )
 
 

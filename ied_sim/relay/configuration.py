@@ -1,9 +1,11 @@
 """What one simulated relay is given: its motor, kind and settings, what it does wrong, whom it lets in."""
 
 from dataclasses import asdict, dataclass, field
+from math import degrees
 from zoneinfo import ZoneInfo
 
 from ied_sim.misbehaviour import Misbehaviour
+from ied_sim.motor.fault import TurnFault
 from ied_sim.motor.plant import MotorPlant
 from ied_sim.motor.sensors import CHANNELS
 from ied_sim.profiles.profile import Profile, Triggers
@@ -67,9 +69,9 @@ class RelayConfiguration:
     def truth(self, time_s: float) -> dict[str, object]:
         """Return the motor's true condition at a time since the scenario's beginning.
 
-        It is whether it runs, mu_f (the equivalent level), theta_f, load_level, joint_ohm, the number of
-        broken bars and of all, eccentricities, the load's pulsations, and of channels that have changed by
-        then how much their gain errors and delays have.
+        It is whether it runs, mu_f (the equivalent level), theta_f, the coil and its axis, load_level,
+        joint_ohm, the number of broken bars and of all, eccentricities, the load's pulsations, and of
+        channels that have changed by then how much their gain errors and delays have.
         """
         plant = self.plant
         parameters = plant.motor.parameters
@@ -78,8 +80,9 @@ class RelayConfiguration:
         contactor = plant.contactor
         return {
             "running": contactor is None or contactor.closure_at(time_s) is not None,
-            "mu_f": level,
+            "mu_f": round(level, 12),
             "theta_f": fault.phase if fault is not None and level > 0 else None,
+            **_in_coil(plant, fault),
             "load_level": plant.load.level_at(time_s),
             "joint_ohm": 0.0 if plant.joint is None else plant.joint.resistance_ohm(time_s),
             "broken_bars": plant.broken_share(time_s) * plant.cage.bars,
@@ -96,6 +99,14 @@ class RelayConfiguration:
                 if gain or delay_s
             },
         }
+
+
+def _in_coil(plant: MotorPlant, fault: TurnFault | None) -> dict[str, object]:
+    """Return the coil of a fault in a winding by slots, and how far its axis lies from the phase's."""
+    if fault is None or fault.coil is None or plant.winding is None:
+        return {}
+    axis = plant.winding.axis_rad(plant.motor.nameplate.pole_pairs, fault.coil)
+    return {"coil": fault.coil, "coil_axis_deg": round(degrees(axis), 6)}
 
 
 def _at_slip_rings(plant: MotorPlant, time_s: float) -> dict[str, object]:

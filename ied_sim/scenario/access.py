@@ -17,7 +17,7 @@ class TlsTable(Table):
     key: str
     pinned: Annotated[tuple[str, ...], Field(min_length=1)]
     ca: str | None = None
-    maximum_version: Literal["1.2", "1.3"] = "1.3"
+    version: Literal["1.2", "1.3"] = "1.2"
 
 
 class AccessTable(Table):
@@ -30,13 +30,13 @@ class AccessTable(Table):
         """Read and check the files. Raise CredentialFileError where one cannot be used."""
         tls = None
         if self.tls is not None:
-            newest = {"1.2": TlsVersion.TLS_1_2, "1.3": TlsVersion.TLS_1_3}[self.tls.maximum_version]
+            version = {"1.2": TlsVersion.TLS_1_2, "1.3": TlsVersion.TLS_1_3}[self.tls.version]
             tls = TlsConfiguration(
                 certificate=folder / self.tls.certificate,
                 key=folder / self.tls.key,
                 pinned=tuple(folder / path for path in self.tls.pinned),
                 ca=None if self.tls.ca is None else folder / self.tls.ca,
-                maximum_version=newest,
+                version=version,
             )
             tls.check()
         passwords = () if self.password_file is None else _passwords(folder / self.password_file)

@@ -10,12 +10,12 @@ from core.units import SECONDS_PER_DAY
 from ied_sim.motor.cage import USUAL_CAGE, Cage
 from ied_sim.motor.course import Points
 from ied_sim.motor.eccentricity import Eccentricity
-from ied_sim.motor.fault import FaultCourse
 from ied_sim.motor.joint import JointCourse
 from ied_sim.motor.plant import rated_current
 from ied_sim.motor.sensors import CHANNELS, ChannelChange, Sensors
 from ied_sim.motor.slip_rings import SlipRings, turns_ratio
 from ied_sim.motor.warming import ALUMINIUM_PER_K, COPPER_PER_K, Warming
+from ied_sim.scenario.fault_tables import Phase, Resistance
 from ied_sim.scenario.moments import MomentTable, require_rising
 from ied_sim.toml_tables import Table
 
@@ -29,51 +29,8 @@ Share = Annotated[float, Field(ge=-0.5, le=0.5)]
 SixShares = tuple[Share, Share, Share, Share, Share, Share]
 Delay = Annotated[float, Field(ge=-20_000, le=20_000)]
 SixDelays = tuple[Delay, Delay, Delay, Delay, Delay, Delay]
-Turns = Annotated[float, Field(ge=0, le=0.5)]
-Resistance = Annotated[float, Field(ge=0)]
 Number = Annotated[float, Field(ge=0)]
-Phase = Literal["a", "b", "c"]
 Duration = Annotated[float, Field(gt=0)]
-
-
-class TimelinePointTable(MomentTable):
-    """One point of a fault's development."""
-
-    level: Turns
-
-
-class FaultTable(Table):
-    """Shorted turns, of a constant level or one that develops."""
-
-    phase: Phase
-    level: Turns | None = None
-    timeline: Annotated[tuple[TimelinePointTable, ...], Field(min_length=1)] | None = None
-    resistance_ohm: Resistance = 0.0
-    path_ratio: Annotated[float, Field(ge=0, le=100)] | None = None
-
-    @model_validator(mode="after")
-    def _is_one_course_in_time(self) -> Self:
-        if (self.level is None) == (self.timeline is None):
-            raise ValueError("give either level or timeline")
-        require_rising([point.time_s for point in self.timeline or ()], "timeline")
-        return self
-
-    @model_validator(mode="after")
-    def _has_one_path(self) -> Self:
-        if self.path_ratio is not None and self.resistance_ohm:
-            raise ValueError("give either resistance_ohm or path_ratio")
-        return self
-
-    def course(self, stator_resistance_ohm: float) -> FaultCourse:
-        """Return the fault's development in a motor."""
-        constant = ((0.0, self.level or 0.0),)
-        points = tuple((p.time_s, p.level) for p in self.timeline) if self.timeline else constant
-        return FaultCourse(
-            "abc".index(self.phase),
-            points,
-            self.resistance_ohm,
-            (self.path_ratio or 0.0) * stator_resistance_ohm,
-        )
 
 
 class CagePointTable(MomentTable):
@@ -104,9 +61,9 @@ class CageTable(Table):
             raise ValueError("places name a bar twice")
         return self
 
-    def cage(self, rotor_slots: int | None) -> Cage:
+    def cage(self, rotor_bars: int | None) -> Cage:
         """Return the cage. Raises ValueError where its places or its broken bars are none of its bars."""
-        cage = Cage(self.bars or rotor_slots or USUAL_CAGE.bars, self.ring_share, self.places)
+        cage = Cage(self.bars or rotor_bars or USUAL_CAGE.bars, self.ring_share, self.places)
         if max(self.places, default=0) >= cage.bars:
             raise ValueError(f"places name a bar above {cage.bars - 1}, the last of {cage.bars}")
         most = max(broken for _, broken in self._points())

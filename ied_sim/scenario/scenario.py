@@ -14,9 +14,14 @@ from core.machines.motor_file.reader import motor_from_table
 from core.machines.parameters import MachineParameters, Motor, Nameplate
 from ied_sim.errors import ScenarioError
 from ied_sim.motor.cage import Cage, cage_loops
+from ied_sim.motor.coils import coils_of
 from ied_sim.motor.contactor import Contactor
+from ied_sim.motor.fault import FaultCourse
+from ied_sim.motor.feeder import Feeder
 from ied_sim.motor.plant import HIGHEST_STEP_RATE_HZ, RATE_PER_STEP, MotorPlant
+from ied_sim.motor.saturation import LINEAR_IRON
 from ied_sim.motor.slip_rings import SlipRings
+from ied_sim.motor.slots import SlotWinding
 from ied_sim.motor.supply import Supply
 from ied_sim.motor.windings import highest_fault_resistance
 from ied_sim.profiles.profile import DEFAULT, Profile, Record, Triggers, read_profile
@@ -150,20 +155,9 @@ def _supply(path: Path, section: MotorTable, motor: Motor, buses: Mapping[str, B
 def _relay_scenario(
     path: Path, section: MotorTable, buses: Mapping[str, BusTable], profile_name: str
 ) -> RelayConfiguration:
-    where = f"[motor {section.ied}]"
     motor = _motor(path, section)
-    course = None
-    if section.fault is not None:
-        course = section.fault.course(motor.parameters.stator_resistance_ohm)
-        highest_ohm = highest_fault_resistance(motor.parameters, HIGHEST_STEP_RATE_HZ * RATE_PER_STEP)
-        if course.resistance_ohm > highest_ohm:
-            raise ScenarioError(
-                path,
-                f"{where} fault.resistance_ohm",
-                expected=f"at most {highest_ohm:.3g}, above which the shorted loop is too fast to simulate",
-                found=f"{course.resistance_ohm:g}",
-            )
     cage = _cage(path, section, motor)
+    winding = _winding(path, section, motor, cage)
     profile = _profile(path, section, profile_name)
     return RelayConfiguration(
         plant=MotorPlant(
@@ -171,7 +165,8 @@ def _relay_scenario(
             supply=_supply(path, section, motor, buses),
             load=section.load.load(),
             sensors=section.sensors.sensors(motor),
-            fault=course,
+            fault=_fault(path, section, motor, winding),
+            winding=winding,
             seed=section.seed,
             warming=None if section.warming is None else section.warming.warming(),
             broken_bars=section.cage.course(cage),
@@ -182,6 +177,8 @@ def _relay_scenario(
                 open_at_first=section.stopped, opens_s=inf if section.stop is None else section.stop.time_s
             ),
             joint=None if section.joint is None else section.joint.course(),
+            feeder=_feeder(path, section, motor),
+            main_saturation=LINEAR_IRON if section.saturation is None else section.saturation.saturation(),
         ),
         profile=profile,
         recorder=_recorder(profile.record, section.recorder, motor.nameplate.rated_frequency_Hz),
@@ -194,11 +191,60 @@ def _relay_scenario(
     )
 
 
+def _feeder(path: Path, section: MotorTable, motor: Motor) -> Feeder:
+    """Return what else lies behind the relay's transformers."""
+    try:
+        return section.feeder.feeder(motor)
+    except ValueError as error:
+        raise ScenarioError(
+            path,
+            f"[motor {section.ied}] feeder",
+            expected="one that the motor's connection allows",
+            found=str(error),
+        ) from error
+
+
+def _winding(path: Path, section: MotorTable, motor: Motor, cage: Cage) -> SlotWinding | None:
+    """Return the winding by slots; it must be one of the motor's poles and leakage."""
+    if section.winding is None:
+        return None
+    winding = section.winding.winding()
+    try:
+        coils_of(motor, winding, cage)
+    except ValueError as error:
+        raise ScenarioError(
+            path, f"[motor {section.ied}] winding", expected="one that the motor can have", found=str(error)
+        ) from error
+    return winding
+
+
+def _fault(path: Path, section: MotorTable, motor: Motor, winding: SlotWinding | None) -> FaultCourse | None:
+    """Return the fault's development."""
+    if section.fault is None:
+        return None
+    where = f"[motor {section.ied}] fault"
+    try:
+        course = section.fault.course(motor.parameters.stator_resistance_ohm, winding)
+    except ValueError as error:
+        raise ScenarioError(
+            path, f"{where}.coil", expected="a coil of the phase", found=str(error)
+        ) from error
+    highest_ohm = highest_fault_resistance(motor.parameters, HIGHEST_STEP_RATE_HZ * RATE_PER_STEP)
+    if course.coil is None and course.resistance_ohm > highest_ohm:
+        raise ScenarioError(
+            path,
+            f"{where}.resistance_ohm",
+            expected=f"at most {highest_ohm:.3g}, above which the shorted loop is too fast to simulate",
+            found=f"{course.resistance_ohm:g}",
+        )
+    return course
+
+
 def _cage(path: Path, section: MotorTable, motor: Motor) -> Cage:
     """Return the cage; its bars must be enough for the motor where some are broken."""
     nameplate = motor.nameplate
     try:
-        cage = section.cage.cage(nameplate.rotor_slots)
+        cage = section.cage.cage(nameplate.rotor_bars)
         if "cage" in section.model_fields_set:
             cage_loops(motor.parameters, nameplate.pole_pairs, cage, 0.0)
     except ValueError as error:

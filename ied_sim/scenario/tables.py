@@ -14,11 +14,12 @@ from ied_sim.motor.load import Load, LoadCycle, Pulsation
 from ied_sim.relay.plant_clock import ClockSettings
 from ied_sim.relay.protection import DefiniteTime, ProtectionSettings, ThermalOverload
 from ied_sim.scenario.access import AccessTable
+from ied_sim.scenario.fault_tables import FaultTable, WindingTable
+from ied_sim.scenario.feeder_tables import FeederTable, SaturationTable
 from ied_sim.scenario.moments import MomentTable, require_rising
 from ied_sim.scenario.motor_tables import (
     CageTable,
     EccentricityTable,
-    FaultTable,
     JointTable,
     RotorTable,
     SensorsTable,
@@ -213,8 +214,11 @@ class MotorTable(Table):
     parameters: dict[str, object] | None = None
     supply: SupplyTable = SupplyTable()
     load: LoadTable = LoadTable()
+    winding: WindingTable | None = None
     fault: FaultTable | None = None
     joint: JointTable | None = None
+    feeder: FeederTable = FeederTable()
+    saturation: SaturationTable | None = None
     cage: CageTable = CageTable()
     rotor: RotorTable | None = None
     eccentricity: EccentricityTable = EccentricityTable()

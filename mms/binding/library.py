@@ -7,11 +7,14 @@ when a report arrives meanwhile. ctypes releases the lock for the length of ever
 import ctypes
 import functools
 import importlib.util
+import mmap
+import re
 from pathlib import Path
 
 from mms.binding.prototypes import PROTOTYPES
 
 _WHEEL = "pyiec61850-ng"
+_MBED_TLS_SOURCES = re.compile(rb"mbedtls-([0-9]+\.[0-9]+\.[0-9]+)/library/")
 
 
 def shared_library() -> Path:
@@ -60,3 +63,34 @@ def library() -> ctypes.CDLL:
         function.restype = result
         function.argtypes = arguments
     return loaded
+
+
+def mbed_tls_version() -> str | None:
+    """Find out which version of Mbed TLS the library works with.
+
+    Some builds can be asked. Others have the paths of their source files in them, which name it.
+
+    Returns
+    -------
+    str or None
+        The version, such as "3.6.0"; None where the library does not tell it.
+
+    Raises
+    ------
+    ImportError
+        The library cannot be found or lacks a function.
+    """
+    try:
+        ask = library().mbedtls_version_get_number
+    except AttributeError:
+        return _mbed_tls_named_in(shared_library())
+    ask.restype, ask.argtypes = ctypes.c_uint, []
+    number = int(ask())
+    return f"{number >> 24}.{number >> 16 & 0xFF}.{number >> 8 & 0xFF}"
+
+
+def _mbed_tls_named_in(file: Path) -> str | None:
+    """Return the one version that the paths of source files in a library name."""
+    with file.open("rb") as opened, mmap.mmap(opened.fileno(), 0, access=mmap.ACCESS_READ) as content:
+        found = set(_MBED_TLS_SOURCES.findall(content))
+    return found.pop().decode("ascii") if len(found) == 1 else None

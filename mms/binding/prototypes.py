@@ -119,6 +119,8 @@ PROTOTYPES: Final[dict[str, tuple[object, list[object]]]] = {
     "TLSConfiguration_enableSessionResumption": (None, [c_void_p, c_bool]),
     "TLSConfiguration_setMinTlsVersion": (None, [c_void_p, c_int]),
     "TLSConfiguration_setMaxTlsVersion": (None, [c_void_p, c_int]),
+    "TLSConfiguration_clearCipherSuiteList": (None, [c_void_p]),
+    "TLSConfiguration_addCipherSuite": (None, [c_void_p, c_int]),
     "TLSConfiguration_setOwnKey": (c_bool, [c_void_p, c_char_p, c_int, c_char_p]),
     "TLSConfiguration_setOwnCertificate": (c_bool, [c_void_p, c_char_p, c_int]),
     "TLSConfiguration_addAllowedCertificate": (c_bool, [c_void_p, c_char_p, c_int]),

@@ -13,7 +13,7 @@ from enum import Enum
 from typing import Final
 
 from mms import errors
-from mms.security.tls import TLS_PORT, TlsContext, TlsVersion
+from mms.security.tls import TLS_PORT, TlsContext, TlsVersion, unverified_context
 
 _CONNECT_REQUEST: Final = bytes.fromhex("0300001611e00000000100c0010dc2020001c1020000")
 _TPKT, _TLS_ALERT, _TLS_HANDSHAKE = 3, 21, 22
@@ -71,7 +71,7 @@ def explain_failure(
     version = tls.established_version
     if version is TlsVersion.TLS_1_2 or (version is TlsVersion.TLS_1_3 and probe.is_accepted(tls)):
         return errors.AssociationRejected(host, "connect", 0, _rejected(password=password))
-    return _with_tls(host, probe)
+    return _with_tls(host, probe, tls.version)
 
 
 def _without_tls(host: str, probe: "_Probe", *, password: bool) -> errors.MmsError:
@@ -79,15 +79,15 @@ def _without_tls(host: str, probe: "_Probe", *, password: bool) -> errors.MmsErr
     if answer is _Answer.MMS:
         return errors.AssociationRejected(host, "connect", 0, _rejected(password=password))
     if answer is _Answer.END:
-        answer = probe.send(_client_hello())
+        answer = probe.send(_client_hello(TlsVersion.TLS_1_2))
     if answer in (_Answer.TLS, _Answer.ALERT):
         reason = "the relay speaks TLS at this port: configure certificates for it (tls)"
         return errors.TlsRequired(host, "connect", 0, reason)
     return _no_relay(host, answer)
 
 
-def _with_tls(host: str, probe: "_Probe") -> errors.MmsError:
-    answer = probe.send(_client_hello())
+def _with_tls(host: str, probe: "_Probe", version: TlsVersion) -> errors.MmsError:
+    answer = probe.send(_client_hello(version))
     if answer is _Answer.TLS:
         reason = (
             "the relay ended the TLS handshake: it does not take our certificate. Expected: one that the "
@@ -95,8 +95,7 @@ def _with_tls(host: str, probe: "_Probe") -> errors.MmsError:
         )
         return errors.CertificateRefused(host, "connect", 0, reason)
     if answer is _Answer.ALERT:
-        reason = "the relay speaks TLS, but no version or cipher that we do (TLS 1.2 and 1.3, IEC 62351-3)"
-        return errors.ConnectFailed(host, "connect", 0, reason)
+        return errors.ConnectFailed(host, "connect", 0, _nothing_in_common(probe, version))
     if answer is _Answer.END and probe.send(_CONNECT_REQUEST) is _Answer.MMS:
         reason = (
             "the relay answers at this port without TLS: expected TLS. Turn it on in the relay, or give its "
@@ -104,6 +103,17 @@ def _with_tls(host: str, probe: "_Probe") -> errors.MmsError:
         )
         return errors.TlsNotSpoken(host, "connect", 0, reason)
     return _no_relay(host, answer)
+
+
+def _nothing_in_common(probe: "_Probe", version: TlsVersion) -> str:
+    """Return why a relay answers our ClientHello with an alert."""
+    other = next(one for one in TlsVersion if one is not version)
+    if probe.send(_client_hello(other)) is _Answer.TLS:
+        return f'the relay speaks TLS {other}, not {version}: set version = "{other}" in its table tls'
+    return (
+        f"the relay speaks TLS, but not TLS {version} with a cipher suite that we offer: ECDHE or DHE, with "
+        "AES-GCM (forward secrecy). Is its firmware old?"
+    )
 
 
 def _rejected(*, password: bool) -> str:
@@ -178,10 +188,8 @@ class _Probe:
         return kinds.get(first[0], _Answer.OTHER) if first else _Answer.END
 
 
-def _client_hello() -> bytes:
-    context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
-    context.check_hostname = False
-    context.verify_mode = ssl.CERT_NONE  # the handshake ends before any certificate comes
+def _client_hello(version: TlsVersion) -> bytes:
+    context = unverified_context(version)  # the handshake ends before any certificate comes
     outgoing = ssl.MemoryBIO()
     handshake = context.wrap_bio(ssl.MemoryBIO(), outgoing)
     try:

@@ -52,6 +52,40 @@ class TlsVersion(IntEnum):
     TLS_1_2 = 6
     TLS_1_3 = 7
 
+    def __str__(self) -> str:
+        return {6: "1.2", 7: "1.3"}[self]
+
+
+CIPHER_SUITES: Final = {
+    TlsVersion.TLS_1_2: (
+        0xC02B,  # TLS_ECDHE_ECDSA_WITH_AES_128_GCM_SHA256
+        0xC02C,  # TLS_ECDHE_ECDSA_WITH_AES_256_GCM_SHA384
+        0xC02F,  # TLS_ECDHE_RSA_WITH_AES_128_GCM_SHA256
+        0xC030,  # TLS_ECDHE_RSA_WITH_AES_256_GCM_SHA384
+        0x009E,  # TLS_DHE_RSA_WITH_AES_128_GCM_SHA256
+        0x009F,  # TLS_DHE_RSA_WITH_AES_256_GCM_SHA384
+    ),
+    TlsVersion.TLS_1_3: (
+        0x1301,  # TLS_AES_128_GCM_SHA256
+        0x1302,  # TLS_AES_256_GCM_SHA384
+        0x1303,  # TLS_CHACHA20_POLY1305_SHA256
+        0x1304,  # TLS_AES_128_CCM_SHA256
+    ),
+}
+"""Cipher suites of each version, by their numbers of IANA, the preferred first.
+
+All have forward secrecy: a recorded connection stays secret when a private key becomes known. The library's
+own list begins with TLS_RSA_WITH_AES_128_CBC_SHA256, which has not.
+"""
+
+_SSL_CIPHERS: Final = "ECDHE+AESGCM:DHE+AESGCM"
+"""Those of TLS 1.2 for the ssl module, whose list for TLS 1.3 cannot be changed."""
+
+_SSL_VERSIONS: Final = {
+    TlsVersion.TLS_1_2: ssl.TLSVersion.TLSv1_2,
+    TlsVersion.TLS_1_3: ssl.TLSVersion.TLSv1_3,
+}
+
 
 @dataclass(frozen=True, slots=True)
 class TlsConfiguration:
@@ -67,10 +101,9 @@ class TlsConfiguration:
         Certificates of those we speak with, at least one; more while one is being exchanged.
     ca : pathlib.Path, optional
         Authorities that sign the pinned certificates. None where those are self-signed.
-    minimum_version : TlsVersion
-        Lowest version to speak.
-    maximum_version : TlsVersion, optional
-        Highest version to speak. The library's highest by default.
+    version : TlsVersion, default TLS_1_2
+        The one version to speak. Clients of Mbed TLS before 3.6.8 that offer 1.2 and 1.3 both have a flaw
+        (CVE-2026-115490), so none offers both.
 
     References
     ----------
@@ -81,8 +114,7 @@ class TlsConfiguration:
     key: Path
     pinned: tuple[Path, ...]
     ca: Path | None = None
-    minimum_version: TlsVersion = TlsVersion.TLS_1_2
-    maximum_version: TlsVersion | None = None
+    version: TlsVersion = TlsVersion.TLS_1_2
 
     def check(self) -> None:
         """Read all files and check them.
@@ -121,6 +153,27 @@ class _Credentials:
         return cls(chain, key, tuple(pinned), authorities)
 
 
+def unverified_context(version: TlsVersion) -> ssl.SSLContext:
+    """Make a context of the ssl module that offers what we offer, for a look at what answers.
+
+    Parameters
+    ----------
+    version : TlsVersion
+        The version to offer, with our cipher suites.
+
+    Returns
+    -------
+    ssl.SSLContext
+        The context. It verifies nothing.
+    """
+    context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
+    context.check_hostname = False
+    context.verify_mode = ssl.CERT_NONE
+    context.minimum_version = context.maximum_version = _SSL_VERSIONS[version]
+    context.set_ciphers(_SSL_CIPHERS)
+    return context
+
+
 class TlsContext:
     """The library's TLSConfiguration of one client connection or one server, destroyed after it.
 
@@ -144,6 +197,7 @@ class TlsContext:
         self._established: TlsVersion | None = None
         self._credentials_read = material = _Credentials.read(configuration)
         self.trusted: Final = tuple(describe_certificate(certificate) for certificate in material.pinned)
+        self.version: Final = configuration.version
         self._handler = TlsEventHandler(guarded(self._on_event, None))
         with _count_lock:
             self.pointer = int(lib.TLSConfiguration_create() or 0)
@@ -163,9 +217,11 @@ class TlsContext:
         lib.TLSConfiguration_setTimeValidation(self.pointer, yes)
         lib.TLSConfiguration_setAllowOnlyKnownCertificates(self.pointer, yes)
         lib.TLSConfiguration_enableSessionResumption(self.pointer, no)  # it would skip the certificates
-        lib.TLSConfiguration_setMinTlsVersion(self.pointer, int(given.minimum_version))
-        if given.maximum_version is not None:
-            lib.TLSConfiguration_setMaxTlsVersion(self.pointer, int(given.maximum_version))
+        lib.TLSConfiguration_setMinTlsVersion(self.pointer, int(given.version))
+        lib.TLSConfiguration_setMaxTlsVersion(self.pointer, int(given.version))
+        lib.TLSConfiguration_clearCipherSuiteList(self.pointer)
+        for suite in CIPHER_SUITES[given.version]:
+            lib.TLSConfiguration_addCipherSuite(self.pointer, suite)
         key = material.key.private_bytes(
             serialization.Encoding.DER, serialization.PrivateFormat.PKCS8, serialization.NoEncryption()
         )
@@ -226,9 +282,7 @@ class TlsContext:
         ssl.SSLContext
             The context.
         """
-        context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
-        context.check_hostname = False
-        context.verify_mode = ssl.CERT_NONE
+        context = unverified_context(self.version)
         identity = b"".join(
             each.public_bytes(serialization.Encoding.PEM) for each in self._credentials_read.chain
         )

@@ -9,12 +9,14 @@ import structlog
 from sqlalchemy.exc import SQLAlchemyError
 from structlog.typing import FilteringBoundLogger
 
-from core.units import NANOSECONDS_PER_SECOND, SECONDS_PER_HOUR, SECONDS_PER_MINUTE
+from core.units import NANOSECONDS_PER_DAY, NANOSECONDS_PER_SECOND, SECONDS_PER_HOUR, SECONDS_PER_MINUTE
 from service.access.bearer_secrets import LONGEST, digest_of
 from service.access.permissions import Permission, permissions_of
+from service.access.second_factors import is_asked_of, is_missing
+from service.access.tokens import as_it_counts
 from service.configuration.access import AccessSettings
 from service.storage import Repository
-from service.storage.records import ApiToken, Role
+from service.storage.records import ApiToken, Role, User
 from service.timing.database_silence import database_trouble, does_not_answer
 
 log: FilteringBoundLogger = structlog.get_logger(__name__)
@@ -35,7 +37,11 @@ class Way(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Identity:
-    """Somebody who showed who they are. session: the digest of its secret; token: the one they showed."""
+    """Somebody who showed who they are. session: the digest of its secret; token: the one they showed.
+
+    password_set_by: who else knows the password that they showed, and are to change before they do anything.
+    may_make_tokens: whether they have shown the second factor, where they need one.
+    """
 
     name: str
     roles: frozenset[Role]
@@ -43,6 +49,8 @@ class Identity:
     way: Way
     session: str | None = None
     token: ApiToken | None = None
+    password_set_by: str | None = None
+    may_make_tokens: bool = True
 
 
 def identity_of_session(
@@ -69,28 +77,65 @@ def identity_of_login(
         limits, now_ns
     ):
         return None
+    if is_asked_of(limits, session.user) and not session.second_factor:
+        return None  # begun before it was asked for
     if is_use and now_ns - session.used_ns > NOTED_AGAIN_NS:
         _note(partial(repository.note_session_used, digest, now_ns=now_ns))
     user = session.user
-    return Identity(user.name, user.roles, permissions_of(user.roles), Way.SESSION, session=digest)
+    return Identity(
+        user.name,
+        user.roles,
+        permissions_after_login(limits, user),
+        Way.SESSION,
+        session=digest,
+        password_set_by=user.password_set_by,
+        may_make_tokens=not is_missing(limits, user),
+    )
 
 
-def identity_of_token(repository: Repository, secret: str, *, now_ns: int) -> Identity | None:
-    """Return whose token it is; None where it is nobody's, or has expired."""
+def permissions_after_login(limits: AccessSettings, user: User) -> frozenset[Permission]:
+    """Return what a user may do who has logged in: see to the own account first, where that is to be."""
+    may = permissions_of(user.roles)
+    return may & {Permission.ACCOUNT} if is_account_first(limits, user) else may
+
+
+def is_account_first(limits: AccessSettings, user: User) -> bool:
+    """Tell whether a user sees to the own account before anything else.
+
+    They change a password that another knows, and set up the second factor that their role needs.
+    """
+    return user.must_change_password or is_missing(limits, user)
+
+
+def identity_of_token(
+    repository: Repository, limits: AccessSettings, secret: str, *, now_ns: int
+) -> Identity | None:
+    """Return whose token it is; None where it is nobody's, or counts no more."""
     if len(secret) > LONGEST:
         return None
     found = repository.token_with(digest_of(secret))
     if found is None:
         return None
-    token, user = found
+    token, user = as_it_counts(found[0], limits), found[1]
     if user.disabled or (token.expires_ns is not None and token.expires_ns <= now_ns):
+        return None
+    if user.subject is not None and not _is_confirmed(user, limits, now_ns):
         return None
     if token.used_ns is None or now_ns - token.used_ns > NOTED_AGAIN_NS:
         _note(partial(repository.note_token_used, token.id, now_ns=now_ns))
     may = permissions_of(user.roles)
     if token.scope is not None:
         may &= scope_of(token.scope)
-    return Identity(user.name, user.roles, may, Way.TOKEN, token=token)
+    return Identity(
+        user.name, user.roles, may, Way.TOKEN, token=token, may_make_tokens=not is_asked_of(limits, user)
+    )
+
+
+def _is_confirmed(user: User, limits: AccessSettings, now_ns: int) -> bool:
+    """Tell whether the identity provider let a user of it in lately: nobody is told when it would not."""
+    if limits.oidc is None or user.confirmed_ns is None:
+        return False
+    return now_ns - user.confirmed_ns < limits.oidc.confirmation_days * NANOSECONDS_PER_DAY
 
 
 def _note(used: Callable[[], None]) -> None:

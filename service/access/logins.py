@@ -3,11 +3,15 @@
 The first and the last are short. The second takes memory: whoever calls it bounds how many do at once.
 """
 
+from collections.abc import Callable
+
 from core.units import NANOSECONDS_PER_SECOND
 from service.access.bearer_secrets import digest_of, new_session
 from service.access.identities import idle_since_ns, oldest_session_ns
 from service.access.passwords import hashed, is_correct, needs_renewal
+from service.access.second_factors import is_asked_of, is_passed
 from service.configuration.access import AccessSettings
+from service.process.sealing import Seal
 from service.storage import Repository
 from service.storage.records import Actor, LoginLimits
 
@@ -15,10 +19,12 @@ LONGEST_NAME = 100
 
 
 class LoginRefusedError(Exception):
-    """The name or the password is wrong; which one is not told."""
+    """The name, the password or the code is wrong; which one is not told."""
 
     def __init__(self) -> None:
-        super().__init__("the name or the password is wrong")
+        super().__init__(
+            "the name or the password is wrong, or the code of the second factor is wrong, used or missing"
+        )
 
 
 class LoginLockedError(Exception):
@@ -43,25 +49,83 @@ def attempt(
 
 
 def check_password(repository: Repository, account: str, password: str, address: str, *, now_ns: int) -> None:
-    """Look at a password, which takes some tenths of a second and 64 MiB. Raises LoginRefusedError."""
+    """Look at the password of somebody who is logged in. It takes some tenths of a second and 64 MiB.
+
+    Raises LoginRefusedError.
+    """
+    kept = _right(repository, account, password, address, now_ns=now_ns)
+    _succeed(repository, account, password, address, kept)
+
+
+def check_login(
+    repository: Repository,
+    settings: AccessSettings,
+    seal: Callable[[], Seal],
+    account: str,
+    password: str,
+    code: str | None,
+    address: str,
+    *,
+    now_ns: int,
+) -> bool:
+    """Look at what somebody shows to log in; return whether that was a second factor too.
+
+    seal: opens the secrets of authenticator apps. It takes as long, and the memory, as a password.
+    Raises LoginRefusedError, SealError.
+    """
+    kept = _right(repository, account, password, address, now_ns=now_ns)
+    user = repository.user(account)
+    if not is_asked_of(settings, user):
+        _succeed(repository, account, password, address, kept)
+        return False
+    by = Actor(account, address, user.roles)
+    if code is None or not is_passed(repository, seal(), account, code, by=by, now_ns=now_ns):
+        reason = "right password, no code" if code is None else "right password, wrong or used code"
+        repository.note_login_failed(account, address, reason, now_ns=now_ns)
+        raise LoginRefusedError
+    _succeed(repository, account, password, address, kept)
+    return True
+
+
+def _right(repository: Repository, account: str, password: str, address: str, *, now_ns: int) -> str:
+    """Return the hash of a password that is right. Raises LoginRefusedError."""
     kept = repository.password_of(account)
     if not is_correct(password, kept) or kept is None:
         repository.note_login_failed(account, address, "wrong name or password", now_ns=now_ns)
         raise LoginRefusedError
+    return kept
+
+
+def _succeed(repository: Repository, account: str, password: str, address: str, kept: str) -> None:
+    """Hold nothing against who has shown all that is asked; any earlier, guesses of codes were forgotten."""
     repository.forget_attempt(account, address)
     if needs_renewal(kept):
         repository.renew_hash(account, kept, hashed(password))
 
 
 def begin_session(
-    repository: Repository, settings: AccessSettings, by: Actor, way: str, *, now_ns: int
+    repository: Repository,
+    settings: AccessSettings,
+    by: Actor,
+    way: str,
+    *,
+    second_factor: bool,
+    ends: str | None,
+    now_ns: int,
 ) -> str:
-    """Return the secret of a new session. Raises NotFoundError (the user was deleted meanwhile)."""
+    """Return the secret of a new session. Raises NotFoundError (the user was deleted meanwhile).
+
+    second_factor: whether more was shown than a password.
+    ends: the secret of the session that the browser had, of whomever; it is of no more use to anybody.
+    """
     secret = new_session()
+    if ends is not None:
+        repository.end_session(digest_of(ends), by=by, now_ns=now_ns)
     repository.begin_session(
         digest_of(secret),
         by.name,
         way,
+        second_factor=second_factor,
         oldest_ns=oldest_session_ns(settings, now_ns),
         idle_since_ns=idle_since_ns(settings, now_ns),
         by=by,

@@ -46,6 +46,8 @@ def identity_of_proxied(
     else:
         groups = [word.strip() for value in values_of(proxy.roles_header) for word in value.split(",")]
         roles = roles_of(groups, proxy.roles)
+        if roles >= {Role.SECADM, Role.SECAUD}:
+            raise ProxiedUserError(f"expected groups of {name} for SECADM or SECAUD, found both")
     return Identity(name, roles, permissions_of(roles), Way.PROXY)
 
 

@@ -7,6 +7,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
+from core.condition.kinds import State
+from core.motor_condition.judging import AIR_GAP_ADVICE
+from core.motor_condition.supply import ADVICE as SUPPLY_ADVICE
+from core.rotor.advice import rotor_advice
+from core.rotor.finding import RotorState
+from core.starts.notable import HARD_STARTS_ADVICE
 from service.alarms.kinds import AlarmKind, AlarmPriority
 
 
@@ -56,19 +62,44 @@ CATALOGUE: Final[Mapping[AlarmKind, AlarmDescription]] = {
         "Two of the latest three records that tell of the rotor show one as uneven as broken bars, a broken "
         "end ring, or a bad contact of a wound rotor make it.",
         "Broken bars overload their neighbours at each start, and pieces of them may damage the winding.",
-        "Have the cage inspected at the next planned stop (of a wound rotor brushes and rings), start the "
-        "motor as seldom as possible until then, and compare its starts with earlier ones.",
+        rotor_advice(RotorState.FAULT),
         "fewer than two of the latest three records show it; while the rotor is still to be watched, "
         "`rotor-watch` takes its place. Also when the motor leaves the plant",
     ),
     AlarmKind.ROTOR_WATCH: AlarmDescription(
         AlarmPriority.MEDIUM,
-        "The motor's records show an uneven rotor, or one that is more uneven than it was at the same load.",
+        "The motor's records show a rotor bar or end-ring defect, or one that has grown at the same load.",
         "It may be the beginning of broken bars, which grow from start to start.",
-        "Have recordings of ten seconds made at half of the rated load or more, and watch the trend of the "
-        "rotor on the motor's page.",
+        rotor_advice(RotorState.WATCH),
         "two of the latest three records show an even rotor, and none a fault; `rotor-fault` takes its "
         "place; or the motor leaves the plant",
+    ),
+    AlarmKind.SUPPLY_FAULT: AlarmDescription(
+        AlarmPriority.HIGH,
+        "Two of the latest three records show a voltage that is unbalanced by more than 5 % (NEMA MG-1), or "
+        "15 % from the rated one: the motor should not run so.",
+        "An unbalanced voltage draws a current of the other sequence that is several times as large, and "
+        "heats rotor and winding beyond what they are made for.",
+        SUPPLY_ADVICE[State.FAULT],
+        "fewer than two of the latest three records show it; while the supply is still beyond a limit, "
+        "`supply-watch` takes its place. Also when the motor leaves the plant",
+    ),
+    AlarmKind.SUPPLY_WATCH: AlarmDescription(
+        AlarmPriority.MEDIUM,
+        "Two of the latest three records show a supply beyond a limit: voltage 10 %, unbalance 2 %, "
+        "frequency -5 to +3 %, harmonic voltage factor 0.03 (NEMA MG-1, IEC 60034-1).",
+        "The motor runs hotter than its plate allows at the same load, and its winding ages faster.",
+        SUPPLY_ADVICE[State.WATCH],
+        "fewer than two of the latest three records show it, `supply-fault` takes its place, or the motor "
+        "leaves the plant",
+    ),
+    AlarmKind.UNEVEN_AIR_GAP: AlarmDescription(
+        AlarmPriority.MEDIUM,
+        "The motor's latest records show an air gap that is more uneven than makers allow, and nothing else "
+        "explains them.",
+        "The rotor is pulled to one side; bearings wear faster, and it may touch the stator one day.",
+        AIR_GAP_ADVICE,
+        "the latest records do not show it, or something else explains them, or the motor leaves the plant",
     ),
     AlarmKind.PARAMETER_DRIFT: AlarmDescription(
         AlarmPriority.MEDIUM,
@@ -86,8 +117,7 @@ CATALOGUE: Final[Mapping[AlarmKind, AlarmDescription]] = {
         "brought the rotor 90 % or more of the heat that it withstands.",
         "Starts heat the rotor most: one more before it has cooled may break bars or melt a cage, and the "
         "winding ages fast.",
-        "Let the motor cool before the next start, find out who or what starts it so often or so long, and "
-        "compare the relay's limits of starts with the motor's data sheet.",
+        HARD_STARTS_ADVICE,
         "none of the latest three starts shows it, or the motor leaves the plant",
     ),
     AlarmKind.CHANGED_STARTS: AlarmDescription(
@@ -149,8 +179,8 @@ CATALOGUE: Final[Mapping[AlarmKind, AlarmDescription]] = {
     ),
     AlarmKind.TIME_ZONE: AlarmDescription(
         AlarmPriority.LOW,
-        "A record that the service triggered is whole hours, or quarters of them, off its trigger: the "
-        "relay's clock runs in another time zone than the motors file says.",
+        "Two records in a row that the service triggered, or the first one, are whole hours, or quarters of "
+        "them, off their trigger: the relay's clock runs in another time zone than the motors file says.",
         "Its records have wrong times, and the motor's trend a wrong order where the zone changes.",
         "Set `time_zone` in the relay's table of the motors file, as the reason says.",
         "the first diagnosis of a triggered record finds its time right",
@@ -220,6 +250,30 @@ CATALOGUE: Final[Mapping[AlarmKind, AlarmDescription]] = {
         "What came since the latest one is lost with the disk.",
         "Look in `mcc backup --list` why back-ups fail, and make one: `mcc backup`.",
         "a back-up is verified",
+    ),
+    AlarmKind.PASSWORD_GUESSING: AlarmDescription(
+        AlarmPriority.HIGH,
+        "So many logins failed within an hour that the service took a pause, or more than 20 in all.",
+        "Somebody may find a password, and do what its owner may do.",
+        "Look at the addresses in the reason and in the audit trail (`login-failed`), and keep them from the "
+        "service's network; where a person mistyped, `mcc user unlock NAME` ends the pause.",
+        "no login was locked for an hour, and no more than 20 failed",
+    ),
+    AlarmKind.FORGED_TOKENS: AlarmDescription(
+        AlarmPriority.HIGH,
+        "More than 10 requests within an hour showed tokens that are unknown, revoked or expired.",
+        "Somebody may be trying tokens; or a program's token has ended, and it reads nothing any more.",
+        "Look at the addresses in the reason and in the audit trail (`token-refused`): give the program "
+        "there another token, or keep the address from the service's network.",
+        "no more than 10 came within an hour",
+    ),
+    AlarmKind.OWNER_LOCKED: AlarmDescription(
+        AlarmPriority.HIGH,
+        "So many logins of a user with the role SECADM failed that none is tried for a while.",
+        "Somebody may be guessing the password that gives the most rights, or keeps its owner out.",
+        "Ask the owner whether it was them; if not, look at the addresses in the audit trail "
+        "(`login-locked`), and end the pause with `mcc user unlock NAME --config FILE`.",
+        "none was locked for an hour",
     ),
 }
 """In the order in which the page shows them: what is about motors, links, relays, the service itself."""

@@ -1,6 +1,11 @@
 """The kinds of alarms and their priorities. The words are part of the REST contract."""
 
+from collections.abc import Mapping
 from enum import StrEnum
+from types import MappingProxyType
+from typing import Final
+
+from core.rotor.finding import RotorState
 
 
 class AlarmPriority(StrEnum):
@@ -20,6 +25,9 @@ class AlarmKind(StrEnum):
     CONDITION_WATCH = "condition-watch"
     ROTOR_FAULT = "rotor-fault"
     ROTOR_WATCH = "rotor-watch"
+    SUPPLY_FAULT = "supply-fault"
+    SUPPLY_WATCH = "supply-watch"
+    UNEVEN_AIR_GAP = "uneven-air-gap"
     PARAMETER_DRIFT = "parameter-drift"
     HARD_STARTS = "hard-starts"
     CHANGED_STARTS = "changed-starts"
@@ -39,7 +47,15 @@ class AlarmKind(StrEnum):
     DISK_FILLING = "disk-filling"
     CERTIFICATE_END = "certificate-end"
     BACKUP_OVERDUE = "backup-overdue"
+    PASSWORD_GUESSING = "password-guessing"  # noqa: S105 - the name of an alarm
+    FORGED_TOKENS = "forged-tokens"
+    OWNER_LOCKED = "owner-locked"
 
+
+ROTOR_KINDS: Final[Mapping[RotorState, AlarmKind]] = MappingProxyType(
+    {RotorState.WATCH: AlarmKind.ROTOR_WATCH, RotorState.FAULT: AlarmKind.ROTOR_FAULT}
+)
+"""States of a rotor that somebody has to look after, and their alarms."""
 
 FOLLOW_FROM_QUARANTINE = frozenset(
     {

@@ -8,6 +8,7 @@ from urllib.parse import quote
 from fastapi import Depends, Request
 
 from core.machines.parameters import Motor
+from service.access.refusals import Refusals
 from service.api.limits.admission import Admission
 from service.configuration.settings import Settings
 from service.recording_store.store import RecordingStore
@@ -49,6 +50,7 @@ class ApiContext:
     uploads: those stored at a time, after they have arrived. passwords: looked at, each in 64 MiB.
     motors: of the plant's files, by name. time_zones: of relays' clocks that do not run in UTC, by motor.
     compute: has somebody do what needs the numbers. integrations: the gateways to other systems.
+    refusals: what was refused since the start.
     waveforms_read: one at a time, because each may have much to read. waveforms_sent: to slow clients, too.
     exports: files of lists, which are made while they are sent. reports: each in a process of its own.
     """
@@ -62,6 +64,7 @@ class ApiContext:
     time_zones: Mapping[str, str] = field(default_factory=dict)
     compute: Compute = compute_here
     integrations: Callable[[], Sequence[Integration]] = tuple
+    refusals: Refusals = field(default_factory=Refusals)
     uploads: Admission = field(default_factory=lambda: Admission("uploads", 3, wait_s=10.0))
     passwords: Admission = field(default_factory=lambda: Admission("passwords", 2, wait_s=10.0))
     waveforms_read: Admission = field(default_factory=lambda: Admission("waveforms", 1, wait_s=10.0))

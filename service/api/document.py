@@ -62,3 +62,19 @@ class RequestDocument(BaseModel):
         if isinstance(found, dict) and len(found) > MOST_FIELDS:
             raise ValueError(f"expected at most {MOST_FIELDS} fields, found {len(found)}")
         return found
+
+
+class RequestForSomebody(RequestDocument):
+    """A document in which who asks may name another person.
+
+    on_behalf_of: whom they ask for. It is shown beside the account that asks, never in its place.
+    """
+
+    on_behalf_of: Person | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _no_author(cls, found: object) -> object:
+        if isinstance(found, dict) and "by" in found:
+            raise ValueError("expected on_behalf_of for a name, found by, which is the account that asks")
+        return found

@@ -25,6 +25,7 @@ class Status(BaseModel):
     parts: dict[str, str] = {}
 
 
+@router.head("/healthz", dependencies=[open_to_all()], include_in_schema=False)
 @router.get("/healthz", dependencies=[open_to_all()])
 async def get_health_of_service() -> Status:
     """Answer, which shows that the service runs."""
@@ -55,7 +56,7 @@ def get_metrics(context: Context) -> Response:
 
     Also the figures of each link and of each motor's condition. Prometheus text format.
     """
-    content = exposition(context.repository, context.settings.stale_after_days)
+    content = exposition(context.repository, context.settings.stale_after_days, context.refusals.counts())
     return Response(content, media_type=MEDIA_TYPE)
 
 

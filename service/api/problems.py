@@ -21,23 +21,30 @@ from structlog.typing import FilteringBoundLogger
 
 from service.access.logins import LoginLockedError
 from service.process.disk_space import is_disk_full
+from service.process.sealing import SealError
 from service.recording_store.errors import RecordingStoreError, StoreError
 from service.storage.errors import (
     AlarmActionError,
     AlarmCannotGrowError,
+    AuditorAccountError,
     DoubtfulBaselineError,
     FolderGoneError,
     LastAdministratorError,
     NotFoundError,
+    NotOwnPasswordError,
     OutOfServiceError,
+    PasswordOfAnotherError,
     RecordingInUseError,
+    RolesNotSeparateError,
     StateConflictError,
+    TokenOfAnotherError,
     TooManyNotesError,
     TooManyTestsError,
     TooManyTokensError,
     TooManyWaitingError,
     UnusableBaselineError,
     UserExistsError,
+    WiderTokenError,
 )
 from service.timing.database_silence import does_not_answer
 
@@ -57,6 +64,12 @@ STATUS_OF: dict[type[Exception], HTTPStatus] = {
     UserExistsError: HTTPStatus.CONFLICT,
     LastAdministratorError: HTTPStatus.CONFLICT,
     TooManyTokensError: HTTPStatus.CONFLICT,
+    RolesNotSeparateError: HTTPStatus.CONFLICT,
+    NotOwnPasswordError: HTTPStatus.CONFLICT,
+    AuditorAccountError: HTTPStatus.FORBIDDEN,
+    PasswordOfAnotherError: HTTPStatus.FORBIDDEN,
+    TokenOfAnotherError: HTTPStatus.FORBIDDEN,
+    WiderTokenError: HTTPStatus.CONFLICT,
 }
 """The HTTP status that answers each refusal of the storage."""
 
@@ -282,6 +295,11 @@ def _in_words(found: Mapping[str, Any]) -> str:
     return str(found["msg"]).removeprefix("Value error, ")  # the name of an exception of Python
 
 
+def _sealed(request: Request, error: Exception) -> JSONResponse:
+    log.error("a secret cannot be opened", path=request.url.path, error=str(error))
+    return problem_response(request.url.path, HTTPStatus.SERVICE_UNAVAILABLE, str(error))
+
+
 def install(app: FastAPI) -> None:
     """Make `app` answer every error with a problem document."""
 
@@ -309,6 +327,7 @@ def install(app: FastAPI) -> None:
     app.add_exception_handler(TooManyTestsError, _too_many)
     app.add_exception_handler(BusyError, _busy)
     app.add_exception_handler(LoginLockedError, _locked)
+    app.add_exception_handler(SealError, _sealed)
     app.add_exception_handler(DoubtfulBaselineError, _doubtful)
     app.add_exception_handler(FolderGoneError, _busy)
     app.add_exception_handler(OSError, _full)

@@ -7,6 +7,7 @@ import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from functools import partial
+from importlib.metadata import version
 from importlib.util import find_spec
 from ipaddress import IPv6Address
 from pathlib import Path
@@ -14,15 +15,19 @@ from tempfile import TemporaryFile, gettempdir
 from threading import Event
 
 import structlog
+from sqlalchemy.exc import SQLAlchemyError
 
+from service.access.refusals import Refusals
 from service.api.access.certificate import CertificateError, ServerCertificate
 from service.api.context import ApiContext, Problem
 from service.api.server import ApiServer, connection_limits
 from service.application.diagnosing import job_runner
 from service.application.parts import Part, running
+from service.audit.actions import AuditAction
 from service.background.workers import background_workers
 from service.collector.supervision.gateway_processes import GatewayProcesses
 from service.condition.motor_data import document_of
+from service.configuration.described import described
 from service.configuration.problems import Problems
 from service.configuration.relay_access import clear_passwords
 from service.configuration.settings import Settings, SettingsError
@@ -34,6 +39,7 @@ from service.plant import Plant, read_plant
 from service.process.disk_space import disk_problem
 from service.process.garbage_collection import spare_what_stays
 from service.process.installation import installation_id
+from service.process.sealing import Seal, SealError
 from service.process.single_instance import exclusive
 from service.process.termination import Termination
 from service.recording_store.errors import StoreError
@@ -41,8 +47,10 @@ from service.recording_store.opening import open_store, store_warnings
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect, migrate
 from service.storage.answering import answering
+from service.storage.records import SERVICE
 from service.storage.transaction_limits import limits_of
 from service.supervision.supervised_process import RESTART_POLICY
+from service.timing.database_silence import database_trouble, does_not_answer
 from service.web.app import create_site, end_streams
 
 log = structlog.get_logger(__name__)
@@ -74,11 +82,13 @@ def _serve(settings: Settings, settings_file: Path | None, termination: Terminat
     require_writable(settings.data_directory)
     termination.step()
     with exclusive(settings.data_directory / "service.lock", wait=False), listening(settings) as listener:
+        _require_seal(settings)
         repository = _prepared(settings, plant)
         termination.step()
         store = _opened_store(settings)
         store.discard_incoming()
-        jobs, parts = _parts(settings, settings_file, plant, repository, store, termination)
+        refusals = Refusals()
+        jobs, parts = _parts(settings, settings_file, plant, repository, store, termination, refusals)
         integrations = PlantGateways(settings)
         room: dict[str, Problem] = {
             "disk": partial(disk_problem, _written(settings, store)),
@@ -95,13 +105,34 @@ def _serve(settings: Settings, settings_file: Path | None, termination: Terminat
             time_zones=plant.time_zones(),
             compute=jobs.compute,
             integrations=integrations.status,
+            refusals=refusals,
         )
         termination.step()
         # They come up last, and are no part of what makes the service ready: nothing here waits for them.
-        with running([*parts.values(), integrations]):
+        with _noted(repository, settings, refusals), running([*parts.values(), integrations]):
             host, port = listener.getsockname()[:2]
             log.info("serving", host=host, port=port, tls=certificate is not None, motors=len(plant.motors))
             _answer(context, listener, termination, certificate)
+
+
+@contextmanager
+def _noted(repository: Repository, settings: Settings, refusals: Refusals) -> Iterator[None]:
+    """Have the audit trail tell of the settings, of the start, and at the end of what was refused last."""
+    installation = installation_id(settings.data_directory)
+    repository.note_settings(described(settings), installation, now_ns=time.time_ns())
+    this = {"version": version("statorwatch"), "host": socket.gethostname(), "process": os.getpid()}
+    subject = ("service", installation)
+    repository.note_by(SERVICE, AuditAction.SERVICE_STARTED, subject, now_ns=time.time_ns(), after=this)
+    try:
+        yield
+    finally:
+        try:
+            refusals.settle(repository, ending=True)
+            repository.note_by(SERVICE, AuditAction.SERVICE_ENDED, subject, now_ns=time.time_ns(), after=this)
+        except SQLAlchemyError as error:
+            if not does_not_answer(error):
+                raise
+            log.warning("the audit trail does not tell of the end", error=database_trouble(error))
 
 
 def _require_sign_on(settings: Settings) -> None:
@@ -110,6 +141,14 @@ def _require_sign_on(settings: Settings) -> None:
         raise ServeError(
             'access.oidc: expected the library authlib, found none: pip install "statorwatch[oidc]"'
         )
+
+
+def _require_seal(settings: Settings) -> None:
+    """Make the key of sealed secrets at the first start. Raises ServeError where it cannot be used."""
+    try:
+        Seal(settings.secrets_key_file)
+    except SealError as error:
+        raise ServeError(str(error)) from error
 
 
 def _certificate(settings: Settings) -> ServerCertificate | None:
@@ -139,6 +178,7 @@ def _prepared(settings: Settings, plant: Plant) -> Repository:
         repository.settle_alarms(now_ns=time.time_ns(), rules=settings.alarms.condition_rules)
         repository.settle_rotor_alarms(now_ns=time.time_ns())
         repository.settle_start_alarms(now_ns=time.time_ns())
+        repository.settle_motor_conditions(now_ns=time.time_ns())
         repository.reset_links(now_ns=time.time_ns())
     return repository
 
@@ -212,6 +252,7 @@ def _parts(
     repository: Repository,
     store: RecordingStore,
     termination: Termination,
+    refusals: Refusals,
 ) -> tuple[JobRunner, Mapping[str, Part]]:
     """The job runner, and all parts of the service by the names that GET /readyz lists."""
     gateways = GatewayProcesses(settings, plant, repository)
@@ -224,6 +265,7 @@ def _parts(
         gateway_problem=gateways.not_running,
         restart_delay_s=RESTART_POLICY.backoff.longest_s,
         compute=jobs.compute,
+        refusals=refusals,
         settings_file=settings_file,
         directories=_written(settings, store),
     )

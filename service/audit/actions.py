@@ -28,6 +28,10 @@ class AuditAction(StrEnum):
     LOGGED_IN = "logged-in"
     LOGIN_FAILED = "login-failed"
     LOGIN_LOCKED = "login-locked"
+    LOGIN_REFUSED = "login-refused"
+    REQUEST_REFUSED = "request-refused"
+    TOKEN_REFUSED = "token-refused"  # noqa: S105 - the name of an action
+    SESSION_REFUSED = "session-refused"
     LOGIN_LINK_MADE = "login-link-made"
     LOGGED_OUT = "logged-out"
     SESSIONS_ENDED = "sessions-ended"
@@ -36,8 +40,18 @@ class AuditAction(StrEnum):
     USER_UNLOCKED = "user-unlocked"
     USER_DELETED = "user-deleted"
     PASSWORD_SET = "password-set"  # noqa: S105 - the name of an action
+    SECOND_FACTOR_BEGUN = "second-factor-begun"
+    SECOND_FACTOR_ADDED = "second-factor-added"
+    SECOND_FACTOR_REMOVED = "second-factor-removed"
+    SECOND_FACTOR_RESET = "second-factor-reset"
+    RECOVERY_CODES_MADE = "recovery-codes-made"
+    RECOVERY_CODE_USED = "recovery-code-used"
     TOKEN_ADDED = "token-added"  # noqa: S105 - the name of an action
     TOKEN_REVOKED = "token-revoked"  # noqa: S105 - the name of an action
+    TOKENS_REVOKED = "tokens-revoked"
+    SERVICE_STARTED = "service-started"
+    SERVICE_ENDED = "service-ended"
+    SETTINGS_CHANGED = "settings-changed"
     PLANT_CHANGED = "plant-changed"
     PARAMETERS_CHANGED = "parameters-changed"
     RETENTION_APPLIED = "retention-applied"
@@ -67,6 +81,19 @@ MEANINGS: Mapping[AuditAction, str] = {
     AuditAction.LOGGED_IN: "Somebody logged in; `after` says how.",
     AuditAction.LOGIN_FAILED: "Somebody tried to log in under this name and was refused; `after` says why.",
     AuditAction.LOGIN_LOCKED: "So many logins failed that none is tried for a while; `after` has from where.",
+    AuditAction.LOGIN_REFUSED: (
+        "Somebody tried to log in during the pause that follows failed logins; `after` counts the `requests`."
+    ),
+    AuditAction.REQUEST_REFUSED: (
+        "Somebody asked for what their roles, or the scope of their token, do not allow; `after` counts the "
+        "`requests`."
+    ),
+    AuditAction.TOKEN_REFUSED: (
+        "Somebody showed a token that is unknown, revoked or expired; `after` counts the `requests`."
+    ),
+    AuditAction.SESSION_REFUSED: (
+        "Somebody showed a session that has ended, or never was; `after` counts the `requests`."
+    ),
     AuditAction.LOGIN_LINK_MADE: "A link was made that logs a user in once; `after` says until when.",
     AuditAction.LOGGED_OUT: "Somebody ended their session.",
     AuditAction.SESSIONS_ENDED: "Somebody ended all sessions of a user.",
@@ -74,9 +101,25 @@ MEANINGS: Mapping[AuditAction, str] = {
     AuditAction.USER_CHANGED: "Somebody changed a user's roles or name, or disabled or enabled them.",
     AuditAction.USER_UNLOCKED: "Somebody had a user's failed logins forgotten.",
     AuditAction.USER_DELETED: "Somebody deleted a user; `before` is who it was.",
-    AuditAction.PASSWORD_SET: "Somebody gave a user another password, which is not kept here.",
+    AuditAction.PASSWORD_SET: (
+        "Somebody changed a user's password, not kept here; `after` says whether they must change it."
+    ),
+    AuditAction.SECOND_FACTOR_BEGUN: "Somebody began to set up an authenticator app.",
+    AuditAction.SECOND_FACTOR_ADDED: "Somebody set up a second factor of their own; `after` says which kind.",
+    AuditAction.SECOND_FACTOR_REMOVED: "Somebody removed their own second factor.",
+    AuditAction.SECOND_FACTOR_RESET: "Somebody removed a user's second factor; a code lets them in once.",
+    AuditAction.RECOVERY_CODES_MADE: "Somebody made other recovery codes of their own.",
+    AuditAction.RECOVERY_CODE_USED: "A recovery code was used to log in; `after` says how many are left.",
     AuditAction.TOKEN_ADDED: "Somebody made a token for programs, which is not kept here.",
-    AuditAction.TOKEN_REVOKED: "Somebody ended a token.",
+    AuditAction.TOKEN_REVOKED: "Somebody ended a token, or the one that it was made with.",
+    AuditAction.TOKENS_REVOKED: (
+        "All tokens of a user ended: on request, or with password, sessions or account; `before` has them."
+    ),
+    AuditAction.SERVICE_STARTED: "The service started; `after` has its version, host and process.",
+    AuditAction.SERVICE_ENDED: "The service ended in order. There is no entry where it was killed.",
+    AuditAction.SETTINGS_CHANGED: (
+        "The service started with other settings than before. A setting that has its default is null."
+    ),
     AuditAction.PLANT_CHANGED: (
         "The service started with other plant files: a site, relay or motor came (no `before`), left (no "
         "`after`) or is told otherwise."

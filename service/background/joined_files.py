@@ -17,11 +17,13 @@ class JoinTask:
 
     time_zone: IANA name of the zone in which the relay's clock runs; None for UTC.
     recorded_ns: when each was recorded [ns UTC].
+    lenient: whether faults of their files are mended.
     """
 
     recordings: tuple[Source, ...]
     recorded_ns: tuple[int, ...]
     time_zone: str | None = None
+    lenient: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +54,7 @@ def join_files(task: JoinTask) -> JoinedFile | NotJoined:
         recordings, names = [], []
         for source in task.recordings:
             with source.opened() as entry:
-                recordings.append(read(entry))
+                recordings.append(read(entry, lenient=task.lenient))
                 names.append(entry.stem)
         if task.time_zone is not None:
             zone = ZoneInfo(task.time_zone)

@@ -5,7 +5,7 @@ own: it is stored, diagnosed, listed and deleted as others are. The motor's cond
 because it follows from its parts already. Of the rotor it tells in their place, for it is longer.
 """
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from concurrent.futures import TimeoutError as NoAnswerInTimeError
 from typing import Final
 
@@ -48,13 +48,18 @@ class SeriesJoiner:
         compute: Compute,
         *,
         time_zones: Mapping[str, str],
+        lenient: Collection[str] = (),
         patience_s: float = PATIENCE_S,
     ) -> None:
-        """time_zones: of the clocks of relays that do not run in UTC, by motor."""
+        """time_zones: of the clocks of relays that do not run in UTC, by motor.
+
+        lenient: motors whose relays' recordings are mended where they are at fault.
+        """
         self._repository = repository
         self._store = store
         self._compute = compute
         self._time_zones = time_zones
+        self._lenient = lenient
         self._patience_ns = round(patience_s * NANOSECONDS_PER_SECOND)
         self._first_seen_ns: dict[str, int] = {}
 
@@ -76,7 +81,12 @@ class SeriesJoiner:
         except RecordingStoreError as error:
             self._repository.leave_unjoined(series, str(error))
             return
-        task = JoinTask(sources, series.recorded_ns, self._time_zones.get(series.motor))
+        task = JoinTask(
+            sources,
+            series.recorded_ns,
+            self._time_zones.get(series.motor),
+            lenient=series.motor in self._lenient,
+        )
         try:
             joined = self._compute(join_files, task).result(ANSWER_TIMEOUT_S)
         except (NoAnswerError, NoAnswerInTimeError) as error:

@@ -17,6 +17,7 @@ from core.machines.parameters import Nameplate
 from core.units import NANOSECONDS_PER_DAY, NANOSECONDS_PER_SECOND
 from service.plant import PlantMotor
 from service.plant.quantities import AveragingStep
+from service.plant.series_rhythm import NoSeriesError, rhythm_of
 from service.plant.steadiness import LEAST_SAMPLES, why_not_steady
 from service.storage import Repository
 from service.storage.records import SeriesHistory
@@ -26,6 +27,10 @@ from service.timing.backoff import Backoff
 log = structlog.get_logger(__name__)
 
 PERIOD_S = 10.0
+MOST_TRIGGERS = 20
+"""A relay whose records are so short that a long one takes more of them is not asked for one by itself."""
+UNASSESSED_NS = 30 * NANOSECONDS_PER_DAY
+"""A rotor that was not assessed for so long has its motor recorded for long at least so often."""
 STEADY_S = 120.0
 """A link is up, and a load is steady, for so long before a long record is asked for."""
 SAMPLES_LOOKED_AT = 1000
@@ -75,13 +80,16 @@ class LongRecorder:
                     usual_s if motor.long_record_s is None else motor.long_record_s,
                 )
         self._due_ns: dict[str, int] = {}
+        self._look_ns: dict[str, int] = {}  # when to ask again: meanwhile the rotor may be assessed no more
         self._put_off: dict[str, str] = {}
 
     def request_due(self, now_ns: int) -> None:
         """Request the long record that is overdue most, if its moment is right. Raises SQLAlchemyError."""
         for motor, wanted in self._wanted.items():
-            if self._due_ns.get(motor, 0) <= now_ns:
-                self._due_ns[motor] = _due_ns(self._repository.series_history(motor), wanted.interval_ns)
+            if self._look_ns.get(motor, 0) <= now_ns:
+                interval_ns = self._interval_ns(motor, wanted.interval_ns, now_ns)
+                self._due_ns[motor] = _due_ns(self._repository.series_history(motor), interval_ns)
+                self._look_ns[motor] = min(self._due_ns[motor], now_ns + NANOSECONDS_PER_DAY)
         overdue = sorted((due_ns, motor) for motor, due_ns in self._due_ns.items() if due_ns <= now_ns)
         if not overdue or self._repository.is_series_under_way(now_ns=now_ns):
             return
@@ -99,6 +107,14 @@ class LongRecorder:
             log.info("long record requested", motor=motor, seconds=seconds, recording_request=made.id)
             return
 
+    def _interval_ns(self, motor: str, usual_ns: int, now_ns: int) -> int:
+        """Return how often a motor is recorded for long: at least monthly while its rotor is not assessed."""
+        if usual_ns <= UNASSESSED_NS:
+            return usual_ns
+        assessed_ns = self._repository.rotor_assessed_ns(motor)
+        is_recent = assessed_ns is not None and assessed_ns > now_ns - UNASSESSED_NS
+        return usual_ns if is_recent else UNASSESSED_NS
+
     def _why_not_now(self, motor: str, now_ns: int) -> str | None:
         """Return why the moment is not right; None where it is."""
         wanted, since_ns = self._wanted[motor], now_ns - self._steady_ns
@@ -107,8 +123,13 @@ class LongRecorder:
             return f"the link to {relay.name} is {relay.link_state}"
         if relay.link_changed_ns is not None and relay.link_changed_ns > since_ns:
             return f"the link to {relay.name} has not been up for long"
-        if self._repository.record_length(motor) is None:
-            return "no record of it was read yet, which tells how long its relay's records are"
+        try:
+            rhythm = rhythm_of(self._repository.record_length(motor), wanted.duration_s)
+        except NoSeriesError as error:
+            return f"no series can be made: {error}"
+        if rhythm.triggers > MOST_TRIGGERS:
+            needed = f"it takes {rhythm.triggers}, at most {MOST_TRIGGERS} are made unasked"
+            return f"its relay's records are too short: {needed}"
         measured = self._repository.measurements(
             motor, AveragingStep.AS_SAMPLED.value, limit=SAMPLES_LOOKED_AT, from_ns=since_ns
         )

@@ -7,6 +7,7 @@ from pathlib import Path
 from threading import Event
 
 from core.units import SECONDS_PER_DAY
+from service.access.refusals import PERIOD_S, Refusals
 from service.background import (
     alarm_steps,
     audit_forwarding,
@@ -52,6 +53,7 @@ class Periods:
     backups_s: float = backups.PERIOD_S
     joining_s: float = joining.PERIOD_S
     long_records_s: float = long_records.PERIOD_S
+    refusals_s: float = PERIOD_S
 
 
 PERIODS = Periods()
@@ -66,6 +68,7 @@ def background_workers(
     gateway_problem: Callable[[], str | None],
     restart_delay_s: float,
     compute: Compute,
+    refusals: Refusals,
     directories: Iterable[Path] = (),
     settings_file: Path | None = None,
     periods: Periods = PERIODS,
@@ -74,7 +77,7 @@ def background_workers(
 
     gateway_problem: why gateways of this service do not run; None while all do.  restart_delay_s: the longest
     pause before a gateway that ended is started again.  compute: has the numbers done.  directories: those
-    that the service writes to.  settings_file: goes into back-ups.
+    that the service writes to.  refusals: what the API refused.  settings_file: goes into back-ups.
     """
     scheduler = Scheduler(
         plant.motors, repository, buses=plant.buses, metering_period_s=settings.metering_period_s
@@ -88,7 +91,13 @@ def background_workers(
     ender = OrphanedRequestEnder(
         settings, repository, gateway_problem=gateway_problem, restart_delay_s=restart_delay_s
     )
-    joiner = SeriesJoiner(repository, store, compute, time_zones=plant.time_zones())
+    joiner = SeriesJoiner(
+        repository,
+        store,
+        compute,
+        time_zones=plant.time_zones(),
+        lenient=[one.name for one in plant.motors if one.motor.reads_leniently],
+    )
     long_recorder = LongRecorder(
         plant.motors,
         repository,
@@ -149,6 +158,11 @@ def background_workers(
             stopping=backup_ends,
         ),
     }
+    workers["refusals"] = PeriodicWorker(
+        "writing of refusals into the audit trail",
+        lambda: refusals.settle(repository),
+        period_s=periods.refusals_s,
+    )
     if settings.audit.syslog is not None:
         workers["audit_forwarding"] = _forwarding(settings.audit.syslog, repository, periods)
     return workers

@@ -1,8 +1,10 @@
 """`mcc`: its commands put together, and how one of them is run."""
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import cache
 from importlib.metadata import version
+from io import TextIOWrapper
 from typing import Annotated
 
 import typer
@@ -23,7 +25,7 @@ from service.cli.commands import (
     service,
     stored,
 )
-from service.cli.output import DONE, FAILED, WRONG_USE, CommandError, print_failure
+from service.cli.output import DONE, FAILED, WRONG_USE, CommandError, defect, print_failure
 
 app = typer.Typer(
     name="mcc",
@@ -76,13 +78,32 @@ for _part in _PARTS:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command. Returns 0 done, 1 failed, 2 wrong use."""
     words = list(sys.argv[1:] if arguments is None else arguments)
+    if isinstance(sys.stdout, TextIOWrapper):  # names of files may be no text, which JSON escapes alike
+        sys.stdout.reconfigure(errors="backslashreplace")
     # The demo's --json names a file, which the command writes itself.
     in_json = "--json" in words and words[0] != "demo"
     try:
-        outcome = app(words, prog_name="mcc", standalone_mode=False)
+        return _run(words, in_json=in_json)
+    except Exception as error:  # noqa: BLE001  whatever a command did not expect is told, and is a defect
+        print_failure(defect(error), in_json=in_json)
+        return FAILED
+
+
+@cache
+def _program() -> Callable[..., object]:
+    return typer.main.get_command(app)
+
+
+def _run(words: Sequence[str], *, in_json: bool) -> int:
+    try:
+        outcome = _program()(words, prog_name="mcc", standalone_mode=False)
     except CommandError as error:
         print_failure(error, in_json=in_json)
         return error.exit_code
+    except UnicodeEncodeError as error:  # of a word that the shell gave in no encoding of text
+        failure = CommandError(f"expected words in UTF-8, found {error.object!r}", details={"type": "NoText"})
+        print_failure(failure, in_json=in_json)
+        return WRONG_USE
     except typer.TyperException as error:
         message = one_line(error.format_message()) or "expected a command"
         context = getattr(error, "ctx", None)

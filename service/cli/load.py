@@ -9,6 +9,7 @@ from core.quantity_text import plain
 from service.cli.output import facts_table, failing_clearly, print_document, results
 from service.client.rest_client import ServiceClient, ServiceError
 from service.client.tables import FittedTable
+from service.client.verdicts import local_time
 
 NOT_TOLD = "-"
 
@@ -50,11 +51,13 @@ def _facts(load: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     if by_resistance is None:
         yield "by resistance", "; ".join(thermal["reasons"])
     else:
-        yield "by resistance", f"{_kelvin(by_resistance)} against the record of {thermal['reference_time']}"
+        reference = local_time(thermal["reference_time"])
+        yield "by resistance", f"{_kelvin(by_resistance)} against the record of {reference}"
 
 
 def _relay(told: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    since = f"{told['since_time']} to {told['time']}" if told["since_time"] else f"up to {told['time']}"
+    until = local_time(told["time"])
+    since = f"{local_time(told['since_time'])} to {until}" if told["since_time"] else f"up to {until}"
     yield "relay's statistics", since
     starts = NOT_TOLD if told["starts"] is None else str(told["starts"])
     counted = "" if told["counted_starts"] is None else f"; counted here: {told['counted_starts']}"

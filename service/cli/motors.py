@@ -6,9 +6,11 @@ from rich.box import SIMPLE_HEAD
 from rich.console import RenderableType
 from rich.text import Text
 
+from core.condition.kinds import State
 from core.error_words import one_line
 from core.machines.parameters import ParametersSource
 from core.machines.typical import COMMISSION
+from core.motor_condition.parts import RANKS
 from service.cli.output import facts_table, failing_clearly, print_document, results
 from service.client.classification import answer_rows
 from service.client.conditions import as_of, condition_lines, condition_of, since_day, state_text
@@ -20,10 +22,11 @@ from service.client.verdicts import (
     interval,
     level,
     load,
+    local_time,
+    local_times,
     percent,
     reasons_of,
     seen_in,
-    to_the_second,
     verdict_text,
 )
 
@@ -33,10 +36,13 @@ NO_RECORDING = "no recording yet"
 
 
 def list_motors(url: str, *, as_json: bool) -> None:
-    """Print one line for each motor of the plant: its condition. Raises CommandError."""
+    """Print one line for each motor of the plant: its condition, those that need attention first.
+
+    Raises CommandError.
+    """
     with failing_clearly(ServiceError), ServiceClient(url) as service:
         motors = list(service.list_motors(health=True, limit=1000))
-        healths = [_listed_health(motor) for motor in motors]
+        healths = sorted((_listed_health(motor) for motor in motors), key=_need)
         table = motors_table(healths)
     if as_json:
         print_document({"motors": motors})
@@ -84,6 +90,11 @@ def motors_table(healths: Sequence[Document]) -> FittedTable:
     return table
 
 
+def _need(health: Document) -> tuple[int, str]:
+    """Return the key by which motors are sorted: the worst state first, then the name."""
+    return RANKS[State(str(condition_of(health)["state"]))], str(health["motor"])
+
+
 def _state(health: Document, condition: Document) -> Text:
     """Return the condition's state; of a motor of which nothing but the nameplate is known, what it needs."""
     state = state_text(condition)
@@ -102,7 +113,7 @@ def _links_in_trouble(healths: Sequence[Document]) -> list[Text]:
     motors: dict[tuple[str, str, str], list[str]] = {}
     for health in healths:
         if health["link_reason"] is not None:
-            link = (str(health["ied"]), str(health["link_state"]), one_line(str(health["link_reason"])))
+            link = (str(health["ied"]), str(health["link_state"]), local_times(health["link_reason"]))
             motors.setdefault(link, []).append(str(health["motor"]))
     return [
         Text(f"{relay} ({', '.join(names)}): {state}: {reason}", style=LINK_COLOURS.get(state, ""))
@@ -113,7 +124,7 @@ def _links_in_trouble(healths: Sequence[Document]) -> list[Text]:
 def _offers(healths: Sequence[Document]) -> list[Text]:
     """Return a line for each motor with nothing but a nameplate whose start was recorded."""
     return [
-        Text(one_line(f"{health['motor']}: {advice}"))
+        Text(local_times(f"{health['motor']}: {advice}"))
         for health in healths
         if health.get("parameters_source") == TYPICAL
         and isinstance(starts := health.get("starts"), Mapping)
@@ -142,13 +153,13 @@ def _latest_recording(health: Document) -> list[tuple[str, RenderableType]]:
         if health["load_level"] is not None:
             rows.append(("load level", load(health["load_level"], health["load_level_ci95"])))
         rows.extend(("reason", Text(reason)) for reason in reasons_of(health))
-        diagnosed = to_the_second(health["recorded_time"])
+        diagnosed = local_time(health["recorded_time"])
         if diagnosed != last:
             rows.append(("diagnosed recording", diagnosed))
     rows.append(("parameters", Text(str(health.get("parameters_source", "-")))))
     rows.append(("last recording", Text(NO_RECORDING if last is None else last)))
     if health.get("stood_time") is not None:
-        rows.append(("last seen to stand", to_the_second(health["stood_time"])))
+        rows.append(("last seen to stand", local_time(health["stood_time"])))
     rows.extend(_starts(health))
     rows.append(("site, relay", Text(f"{health['site']}, {health['ied']}")))
     rows.append(("link", _link_with_reason(health)))
@@ -160,7 +171,7 @@ def _last_recording(health: Document) -> str | None:
     last = health["last_recording"]
     if not isinstance(last, Mapping):
         return None
-    when = to_the_second(last["recorded_time"] or last["announced_time"])
+    when = local_time(last["recorded_time"] or last["announced_time"])
     if last["state"] == "diagnosed":
         return f"{when}{seen_in(last.get('operation'))}"
     reason = f": {one_line(str(last['reason']))}" if last["reason"] else ""
@@ -174,7 +185,7 @@ def _starts(health: Document) -> list[tuple[str, RenderableType]]:
         return []
     if starts["advice"] is not None:
         return [("starts", Text(one_line(str(starts["advice"]))))]
-    return [("starts", f"{starts['number']}, the latest {to_the_second(starts['latest_time'])}")]
+    return [("starts", f"{starts['number']}, the latest {local_time(starts['latest_time'])}")]
 
 
 def _link(health: Document) -> Text:
@@ -185,5 +196,5 @@ def _link(health: Document) -> Text:
 def _link_with_reason(health: Document) -> Text:
     link = _link(health)
     if health["link_reason"] is not None:
-        link.append(f": {one_line(str(health['link_reason']))}")
+        link.append(f": {local_times(health['link_reason'])}")
     return link

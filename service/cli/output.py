@@ -3,8 +3,10 @@
 import json
 import os
 import sys
+import traceback
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from pathlib import Path
 
 from rich.console import Console, RenderableType
 from rich.text import Text
@@ -53,9 +55,20 @@ class CommandError(Exception):
         return cls(message, details=details, exit_code=exit_code)
 
 
+def defect(error: Exception) -> CommandError:
+    """Return what a command says of an error that nobody expected: a defect of ours, and where it is."""
+    inner = traceback.extract_tb(error.__traceback__)
+    places = [f"{Path(frame.filename).name}, line {frame.lineno}" for frame in inner[-2:]]
+    return CommandError(
+        f"a defect of mcc: {type(error).__name__}: {one_line(str(error))} ({'; '.join(places)}): please "
+        "report it with the command and its files",
+        details={"type": "Defect", "error": type(error).__name__, "places": places},
+    )
+
+
 @contextmanager
 def failing_clearly(*expected: type[Exception], exit_code: int = FAILED) -> Iterator[None]:
-    """Turn expected errors into CommandError. Any other error is a bug and keeps its traceback."""
+    """Turn expected errors into CommandError. Any other error is a defect, which `main` tells as such."""
     try:
         yield
     except expected as error:

@@ -15,7 +15,7 @@ _USED = (
     ("trigger_action", "operated as"),
     ("control_model", "control model"),
     ("record_made", "record made"),
-    ("records_told_by", "records told by"),
+    ("records_told_by", "records announced by"),
     ("report_control", "report control"),
     ("events_directory", "events directory"),
     ("text_reports", "text reports"),
@@ -54,7 +54,7 @@ def _lines(ied: Document) -> list[tuple[str, str]]:
     lines.extend(_length_lines(ied["report_length"]))
     lines.extend(
         (
-            f"other than its SCL: {each['kind']}",
+            f"SCL mismatch: {each['kind']}",
             f"expected {each['expected'] or NONE}, found {each['found'] or NONE}",
         )
         for each in _items(ied, "differences")

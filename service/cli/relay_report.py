@@ -9,7 +9,7 @@ from rich.text import Text
 from core.error_words import one_line
 from service.cli.output import CommandError, failing_clearly, print_document, results
 from service.client.rest_client import ServiceClient, ServiceError
-from service.client.verdicts import to_the_second
+from service.client.verdicts import local_time
 
 TOLD: Final = {
     "added": "a start that was not recorded",
@@ -43,16 +43,16 @@ def _lines(found: Mapping[str, Any], name: str) -> Iterator[str]:
     if found["motor_statistics"] is not None:
         told = found["motor_statistics"]
         what = "kept; mcc load shows them" if told["added"] else "were there already"
-        yield f"statistics of {to_the_second(told['time'])}: {what}"
+        yield f"statistics of {local_time(told['time'])}: {what}"
     if found["events"] is not None:
         yield from _events(found["events"])
 
 
 def _starts(found: Mapping[str, Any], name: str) -> Iterator[str]:
     for one in found["starts"]:
-        yield f"{to_the_second(one['time'])}: {TOLD[one['outcome']]} ({one['id']})"
+        yield f"{local_time(one['time'])}: {TOLD[one['outcome']]} ({one['id']})"
     for one in found["left_out"]:
-        yield f"{to_the_second(one['time'])}: left out: {one['reason']}"
+        yield f"{local_time(one['time'])}: left out: {one['reason']}"
     if not found["starts"] and not found["left_out"]:
         yield f"{name}: the relay has no start in its report"
 

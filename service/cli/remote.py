@@ -5,6 +5,7 @@ from collections.abc import Mapping
 
 from rich.text import Text
 
+from core.diagnosis.phase_words import turns_phase_in_words
 from core.error_words import one_line
 from service.cli.output import CommandError, failing_clearly, print_document, progress, results
 from service.client.rest_client import Document, ServiceClient, ServiceError
@@ -144,14 +145,15 @@ def verdict_line(motor: str, diagnosis: Document) -> Text:
     line.append_text(verdict_text(str(diagnosis["verdict"]), _phase(diagnosis)))
     if diagnosis["mu_f"] is not None:
         line.append(f", {level(diagnosis['mu_f'], diagnosis['mu_f_ci95'])}, load {_load(diagnosis)}")
-        line.append(f", seen from {percent(diagnosis['detection_limit'])} %")
+        line.append(f", detection limit {percent(diagnosis['detection_limit'])} %")
     else:
         line.append(one_line(f": {'; '.join(reasons_of(diagnosis))}"))
     return line
 
 
 def _phase(diagnosis: Document) -> str:
-    return "" if diagnosis["phase"] is None else f"in phase {diagnosis['phase']}"
+    words = turns_phase_in_words(diagnosis)
+    return f"in phase {words}" if words else ""
 
 
 def _load(found: Document) -> str:

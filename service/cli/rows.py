@@ -42,7 +42,7 @@ def print_rows(
 
     name: of the list in the JSON document.  fields: those of a row in CSV, in their order; of two numbers
     such as ci95 each gets a column.  columns: the table's, by heading.  whole: headings of the
-    columns that are wrapped last of all, such as ids, which people copy.
+    columns that are wrapped and left out last of all, such as ids, which people copy.
     """
     if as_json:
         print_document({name: list(rows)})
@@ -52,6 +52,7 @@ def print_rows(
         results().print(Text(f"no {name}"))
     else:
         table = FittedTable(box=SIMPLE_HEAD, collapse_padding=True)
+        table.kept = whole
         for heading in columns:
             table.add_column(heading, no_wrap=heading in whole)
         for row in rows:

@@ -12,7 +12,7 @@ from service.cli.rows import Column, print_rows, require_one_format
 from service.client.conditions import STATE_COLOURS, state_text
 from service.client.rest_client import Document, ServiceClient, ServiceError
 from service.client.rotor_and_supply import STATES
-from service.client.verdicts import interval, load, percent, to_the_second, verdict_text
+from service.client.verdicts import interval, load, local_time, percent, verdict_text
 
 FIELDS = (
     "time", "value", "ci95", "scatter95", "detection_limit", "verdict", "state", "kind", "phase",
@@ -83,9 +83,7 @@ def show_trend(
     with failing_clearly(ServiceError), ServiceClient(url) as service:
         found = LISTS[part](service, motor, limit=1000, **query)
         points = [point_of(one) for one in deque(found, maxlen=limit)]
-    print_rows(
-        "points", points, FIELDS, _columns(quantity), as_csv=as_csv, as_json=as_json, whole=("recording",)
-    )
+    print_rows("points", points, FIELDS, _columns(quantity), as_csv=as_csv, as_json=as_json)
 
 
 def _source(quantity: str) -> tuple[str, Callable[[Document], Document]]:
@@ -143,13 +141,13 @@ def _place(one: Document) -> dict[str, object]:
 
 def _columns(quantity: str) -> dict[str, Column]:
     columns: dict[str, Column] = {
-        "time": lambda point: to_the_second(point["time"]),
+        "time": lambda point: local_time(point["time"]),
         _heading(quantity): lambda point: _value(point, quantity),
     }
     if quantity in ("mu_f", *LIMITED_SWINGS):
-        columns["seen from %"] = lambda point: percent(point["detection_limit"])
+        columns["detection limit %"] = lambda point: percent(point["detection_limit"])
     if quantity == ROTOR_SEVERITY:
-        columns["seen from dB"] = lambda point: _decibels(point["detection_limit"])
+        columns["detection limit dB"] = lambda point: _decibels(point["detection_limit"])
         columns["rotor"] = _rotor_state
     elif _source(quantity)[0] == "trend":
         columns["verdict"] = _said

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
-from core.classification.causes import IN_WORDS
+from core.diagnosis.causes import IN_WORDS
 from core.terms import phrase
 
 LEAST_SHOWN: Final = 0.02
@@ -69,7 +69,7 @@ def answer_shown(document: Mapping[str, Any]) -> AnswerShown:
 def answer_rows(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     """Yield the rows of a table: the answer, how likely each cause is, why, and what would tell."""
     shown = answer_shown(document)
-    yield "answer", f"{shown.words} ({shown.percent} %)"
+    yield "answer", f"{shown.words} ({shown.percent} %)" if document["answer"] else shown.words
     for one in shown.causes:
         yield "likelihood", f"{one.words} {one.percent} %" + (f": {one.figure}" if one.figure else "")
     for reason in shown.reasons:

@@ -4,10 +4,12 @@ from collections.abc import Mapping, Sequence
 
 from rich.text import Text
 
+from core.condition.verdict.phase_words import kinds_in_words
+from core.motor_condition.parts import findings_beside_stator, parts_of
 from core.quantity_text import plain
 from core.terms import phrase
 from service.client.rest_client import Document, ServiceError
-from service.client.verdicts import level, percent, to_the_second
+from service.client.verdicts import level, local_time, percent
 
 STATE_COLOURS = {"healthy": "green", "watch": "yellow", "fault": "red"}
 
@@ -28,27 +30,33 @@ def state_text(condition: Document) -> Text:
 
 
 def cause(condition: Document) -> str:
-    """Return what has changed, with its phase: "shorted turns b"; of what is open, what it may be."""
+    """Return what has changed, with its phase: "shorted turns b"; of what is open, what it may be.
+
+    Where the phase of shorted turns is not sure: "shorted turns in phase a (72 %) or c (28 %)".
+    """
     kind = str(condition["kind"])
-    if kind == "none":
-        return ""
+    beside = findings_beside_stator(parts_of(condition))
+    if beside or kind == "none":
+        return beside
     candidates = condition.get("candidates")
     kinds = [str(one) for one in candidates] if isinstance(candidates, Sequence) else []
-    words = " or ".join(phrase(one) for one in kinds or [kind])
-    return f"{words} {condition['phase'] or ''}".strip()
+    phase, likely = condition["phase"], condition.get("phase_probabilities")
+    told = None if phase is None else str(phase)
+    words = kinds_in_words(kinds or [kind], told, likely if isinstance(likely, Sequence) else None, phrase)
+    return f"{words} {told or ''}".strip()
 
 
 def as_of(condition: Document) -> Text:
     """Return the time of the latest record that counts, to the minute, and whether it is too old."""
     if condition["as_of"] is None:
         return Text("-")
-    when = str(condition["as_of"])[:16].replace("T", " ")
+    when = local_time(condition["as_of"], seconds=False)
     return Text(f"{when} stale", style="yellow") if condition["stale"] else Text(when)
 
 
 def since_day(condition: Document) -> str:
     """Return the date of the first record that shows a change; "-" where there is none."""
-    return "-" if condition["since"] is None or stands(condition) else str(condition["since"])[:10]
+    return "-" if condition["since"] is None or stands(condition) else local_time(condition["since"])[:10]
 
 
 def stands(condition: Document) -> bool:
@@ -77,12 +85,12 @@ def condition_lines(condition: Document) -> list[tuple[str, Text]]:
         lines.append(("as of", Text("no record yet")))
     else:
         stale = "; stale: no newer record counts" if condition["stale"] else ""
-        lines.append(("as of", Text(f"{to_the_second(when)}{stale}", style="yellow" if stale else "")))
+        lines.append(("as of", Text(f"{local_time(when)}{stale}", style="yellow" if stale else "")))
     return lines
 
 
 def _since(condition: Document) -> str:
-    since = to_the_second(condition["since"])
+    since = local_time(condition["since"])
     return f"unknown: there since the first record, of {since}" if stands(condition) else since
 
 
@@ -110,9 +118,7 @@ def _reference(reference: object) -> str:
     if not reference["complete"]:
         return f"{records} so far; no change can be seen before it is complete"
     detectable = reference.get("detectable")
-    seen = (
-        "" if detectable is None else f"; a step of {percent(detectable)} % would be seen within ten records"
-    )
+    seen = "" if detectable is None else f"; detection limit {percent(detectable)} % within ten records"
     return f"{records}{seen}"
 
 

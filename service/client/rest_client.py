@@ -70,9 +70,12 @@ class ServiceClient(Client):
             return error.status is not None
         return True
 
-    def begin_session(self, name: str, password: str) -> "tuple[Account, str]":
-        """Begin a session, and return the account and the session's secret. Raises ServiceError."""
-        account = self.log_in({"name": name, "password": password})
+    def begin_session(self, name: str, password: str, code: str | None = None) -> "tuple[Account, str]":
+        """Begin a session, and return the account and the session's secret. Raises ServiceError.
+
+        code: of the second factor.
+        """
+        account = self.log_in({"name": name, "password": password, "code": code})
         secret = self._http.cookies.get(COOKIES[self._http.base_url.scheme])
         if secret is None:
             raise ServiceError(f"{self.url}: expected the cookie of a session, found none")

@@ -17,18 +17,18 @@ STATES = {
     RotorState.HEALTHY: "healthy",
     RotorState.WATCH: "watch",
     RotorState.FAULT: "fault",
-    RotorState.UNSUPPORTED: "not told",
+    RotorState.UNSUPPORTED: "not assessed",
 }
 """What people read of the state of a rotor."""
 
 
 def rotor_words(finding: RotorFinding) -> str:
-    """Return state and severity: "fault, asymmetry -29.0 dB [-31.0..-27.5]; -52.0 dB would be seen"."""
+    """Return state and severity: "fault, asymmetry -29.0 dB [-31.0..-27.5]; detection limit -52.0 dB"."""
     words = STATES[finding.state]
     if finding.severity_dB is not None:
         words += f", asymmetry {decibels(finding.severity_dB, finding.severity_dB_ci95)}"
     if finding.detection_limit_dB is not None:
-        words += f"; {finding.detection_limit_dB:.1f} dB would be seen"
+        words += f"; detection limit {finding.detection_limit_dB:.1f} dB"
     return words
 
 

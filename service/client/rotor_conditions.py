@@ -6,7 +6,7 @@ from core.rotor.finding import RotorState
 from service.client.conditions import STATE_COLOURS
 from service.client.rest_client import Document, ServiceClient
 from service.client.rotor_and_supply import STATES
-from service.client.verdicts import to_the_second
+from service.client.verdicts import local_time
 
 LOAD_OSCILLATION = "load oscillation"
 """So begins the reason that tells of a load that swings at twice the slip."""
@@ -34,11 +34,11 @@ def rotor_lines(rotor: Document) -> list[tuple[str, Text]]:
     is_ill = rotor["state"] in (RotorState.WATCH, RotorState.FAULT)
     if is_ill:
         lines.append(("what to do", Text(str(rotor["advice"]))))
-        lines.append(("since", Text(str(to_the_second(rotor["since"])))))
+        lines.append(("since", Text(str(local_time(rotor["since"])))))
     lines += [("why" if number == 0 else "", Text(one)) for number, one in enumerate(_reasons(rotor))]
     start = rotor.get("start")
     if isinstance(start, dict):
-        lines.append(("latest start", Text(f"{to_the_second(start['time'])}: {start['words']}")))
+        lines.append(("latest start", Text(f"{local_time(start['time'])}: {start['words']}")))
     return lines
 
 

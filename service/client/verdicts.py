@@ -4,6 +4,10 @@ from collections.abc import Mapping
 
 from rich.text import Text
 
+from core.error_words import one_line
+from core.time_stamps import nanoseconds
+from core.time_words import clock, with_clock_times
+
 VERDICT_COLOURS = {"healthy": "green", "watch": "yellow", "fault": "red", "undiagnosable": "magenta"}
 
 
@@ -67,6 +71,11 @@ def reasons_of(found: Mapping[str, object]) -> list[str]:
     return list(dict.fromkeys(map(str, reasons))) if isinstance(reasons, list) else []
 
 
-def to_the_second(time: object) -> str:
-    """Return an RFC 3339 time without the fractions of a second: "2026-01-31 12:00:00 UTC"."""
-    return f"{str(time)[:19].replace('T', ' ')} UTC"
+def local_time(time: object, *, seconds: bool = True) -> str:
+    """Return an RFC 3339 time as this machine's clock shows it: "2026-01-31 13:00:00 +01:00"."""
+    return clock(nanoseconds(str(time)), None, seconds=seconds)
+
+
+def local_times(sentence: object) -> str:
+    """Return a sentence of the service in one line, with its times as this machine's clock shows them."""
+    return with_clock_times(one_line(str(sentence)), None)

@@ -12,7 +12,8 @@ from core.condition.errors import ObservationError
 from core.condition.following.follower import Follower
 from core.condition.kinds import moves_impedance
 from core.condition.rules import RULES
-from core.condition.verdict.condition import Condition, condition_of
+from core.condition.verdict.condition import Condition
+from core.condition.verdict.judging import condition_of
 from core.condition.verdict.verdict import Verdict, verdict_of
 from core.machines.parameters import Motor
 from service.condition.checkpoints import is_kept

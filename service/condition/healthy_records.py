@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from core.diagnosis.errors import DiagnosisError
 from core.machines.parameters import Motor
+from core.machines.table_layout import layout_of
 from core.recordings import Recording, RecordingError, read
 from service.recording_store.recording import Source
 
@@ -27,12 +28,12 @@ def learnt(healthy: tuple[Source, ...], motor: Motor) -> "Baseline":
     from core.diagnosis.stator import learn_baseline
 
     try:
-        return learn_baseline(_read(healthy), motor)
+        return learn_baseline(_read(healthy, motor), motor)
     except (RecordingError, DiagnosisError) as error:
         raise DiagnosisError(f"the motor's baseline cannot be learnt: {error}") from error
 
 
-def _read(healthy: tuple[Source, ...]) -> Iterator[Recording]:
+def _read(healthy: tuple[Source, ...], motor: Motor) -> Iterator[Recording]:
     for one in healthy:
         with one.opened() as entry:
-            yield read(entry, most_values=MOST_VALUES)
+            yield read(entry, lenient=motor.reads_leniently, most_values=MOST_VALUES, layout=layout_of(motor))

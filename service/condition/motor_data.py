@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
+from core.machines.deep_bars import DeepBars, LeakageSaturation
 from core.machines.parameters import (
     Connection,
     Limits,
@@ -15,13 +16,18 @@ from core.machines.parameters import (
     WoundRotor,
 )
 from core.machines.sensors import SensorClass
+from core.machines.stator_winding import StatorWinding, WindingKind
 from service.storage.records import MotorVersion
 
 
 def document_of(motor: Motor) -> dict[str, Any]:
     """Return all that a motor's condition depends on."""
+    plate = asdict(motor.nameplate)
+    del plate["rotor_bars"]
+    if motor.nameplate.rated_speed_rpm is None:
+        del plate["rated_speed_rpm"]
     document = {
-        "nameplate": {k: v for k, v in asdict(motor.nameplate).items() if k != "rotor_slots"},
+        "nameplate": plate,
         "parameters": asdict(motor.parameters),
         "tolerances": {"source": str(motor.parameters_source), **asdict(motor.tolerances)},
         "limits": asdict(motor.limits),
@@ -30,6 +36,12 @@ def document_of(motor: Motor) -> dict[str, Any]:
     if motor.wound_rotor is not None:
         rotor = asdict(motor.wound_rotor)
         document["wound_rotor"] = {**rotor, "external_resistance_ohm": [*rotor["external_resistance_ohm"]]}
+    if motor.winding is not None:
+        document["winding"] = {**asdict(motor.winding), "kind": str(motor.winding.kind)}
+    if motor.deep_bars is not None:
+        document["deep_bars"] = asdict(motor.deep_bars)
+    if motor.leakage_saturation is not None:
+        document["leakage_saturation"] = asdict(motor.leakage_saturation)
     return document
 
 
@@ -38,24 +50,36 @@ def motor_of(motor: Motor, document: Mapping[str, Any]) -> Motor:
 
     Documents of earlier versions have no tolerances: all parameters were given.
     """
-    nameplate = document["nameplate"]
+    nameplate, rotor = dict(document["nameplate"]), dict(document.get("wound_rotor", {}))
+    if "rated_speed_rpm" in rotor:  # documents of earlier versions have it there
+        nameplate["rated_speed_rpm"] = rotor.pop("rated_speed_rpm")
     tolerances = dict(document.get("tolerances", {}))
     source = ParametersSource(tolerances.pop("source", ParametersSource.GIVEN))
     connection = Connection(nameplate["connection"])
-    slots = motor.nameplate.rotor_slots  # no condition depends on them: they are as the file says now
+    slots = motor.nameplate.rotor_bars  # no condition depends on them: they are as the file says now
     return replace(
         motor,
-        nameplate=Nameplate(**{**nameplate, "connection": connection, "rotor_slots": slots}),
+        nameplate=Nameplate(**{**nameplate, "connection": connection, "rotor_bars": slots}),
         parameters=MachineParameters(**document["parameters"]),
         parameters_source=source,
         tolerances=ParameterTolerances(**tolerances),
-        wound_rotor=_wound_rotor(document.get("wound_rotor")),
+        wound_rotor=_wound_rotor(rotor),
+        winding=_winding(document.get("winding")),
+        deep_bars=DeepBars(**document["deep_bars"]) if "deep_bars" in document else None,
+        leakage_saturation=(
+            LeakageSaturation(**document["leakage_saturation"]) if "leakage_saturation" in document else None
+        ),
     )
 
 
-def _wound_rotor(table: Mapping[str, Any] | None) -> WoundRotor | None:
+def _winding(table: Mapping[str, Any] | None) -> StatorWinding | None:
+    """Return how the stator is wound; None where the file did not tell it."""
+    return None if table is None else StatorWinding(**{**table, "kind": WindingKind(table["kind"])})
+
+
+def _wound_rotor(table: Mapping[str, Any]) -> WoundRotor | None:
     """Return the rotor's winding; None of a cage, of which documents say nothing."""
-    if table is None:
+    if not table:
         return None
     least, most = table["external_resistance_ohm"]
     return WoundRotor(**{**table, "external_resistance_ohm": (least, most)})

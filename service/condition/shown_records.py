@@ -21,19 +21,17 @@ def asymmetry_of_records(
     motor: Motor,
     *,
     since_ns: int | None,
-    path_ratio: float = 0.0,
     detectable: float | None = None,
     state: str = "healthy",
 ) -> Asymmetry:
     """Return the asymmetry that records show: those before a change with their mean, and those since it.
 
-    seen: oldest first.  since_ns: first record of the change; None without one.  path_ratio: of the path that
-    the shorted turns would have.
+    seen: oldest first.  since_ns: first record of the change; None without one.
     """
     before: list[complex] = []
     since: list[complex] = []
     for one in seen:
-        level = _asymmetry_of(one, motor, path_ratio)
+        level = _asymmetry_of(one, motor)
         if level is not None:
             is_before = since_ns is None or one.observation.time_ns < since_ns
             (before if is_before else since).append(level)
@@ -74,11 +72,11 @@ def supply_points(seen: Sequence[SeenRecord]) -> list[SupplyPoint]:
     ]
 
 
-def _asymmetry_of(one: SeenRecord, motor: Motor, path_ratio: float) -> complex | None:
+def _asymmetry_of(one: SeenRecord, motor: Motor) -> complex | None:
     from core.condition.measuring.asymmetry import asymmetry_of  # numbers, where they are needed
 
     try:
-        return asymmetry_of(one.observation, motor, path_ratio)
+        return asymmetry_of(one.observation, motor)
     except ObservationError:
         return None
 

@@ -4,6 +4,8 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Final, Protocol
 
 from core.condition.kinds import Kind, State
+from core.condition.verdict.phase_words import kinds_in_words
+from core.motor_condition.parts import Part, PartCondition, findings_beside_stator
 from core.time_words import time_ahead
 from core.units import NANOSECONDS_PER_DAY
 from service.condition.staleness import Missing
@@ -18,8 +20,23 @@ KINDS: Final[Mapping[Kind, str]] = {
     Kind.SUPPLY: "another supply",
     Kind.PARAMETERS: "another impedance of the motor",
     Kind.ROTOR: "another rotor",
+    Kind.ASYMMETRY: "an asymmetry of unknown cause",
+    Kind.OTHER_LOAD: "a capacitor or another load behind the relay",
 }
 """What has changed, in words for a sentence."""
+
+
+class SaidOfPart(Protocol):
+    """What is said of a part, as the database keeps it or as the API tells it."""
+
+    @property
+    def part(self) -> Part: ...
+    @property
+    def state(self) -> State: ...
+    @property
+    def finding(self) -> str: ...
+    @property
+    def explained_by(self) -> Part | None: ...
 
 
 class Judged(Protocol):
@@ -34,17 +51,25 @@ class Judged(Protocol):
     @property
     def phase(self) -> str | None: ...
     @property
+    def phase_probabilities(self) -> Sequence[float] | None: ...
+    @property
     def change(self) -> float | None: ...
+    @property
+    def parts(self) -> Sequence[SaidOfPart]: ...
 
 
 def cause(judged: Judged) -> str:
-    """Return what has changed, with its phase; of what is open, what it may be; empty where nothing has."""
-    if judged.kind is Kind.NONE:
-        return ""
+    """Return what has changed, with its phase; of what is open, what it may be; empty where nothing has.
+
+    Where the phase of shorted turns is not sure, they have the likely ones.
+    """
+    beside = beside_stator(judged)
+    if beside or judged.kind is Kind.NONE:
+        return beside
     if judged.kind is not Kind.UNCLEAR:
-        words = KINDS[judged.kind]
+        words = _of_kinds(judged, judged.kind)
     elif judged.candidates:
-        words = f"may be {_either(judged.candidates)}"
+        words = f"may be {_of_kinds(judged, *judged.candidates)}"
     else:
         words = "a change that another record has to confirm"
     return words if judged.phase is None else f"{words}, phase {judged.phase}"
@@ -61,7 +86,17 @@ def finding(judged: Judged, missing: Missing | None, *, complete: bool) -> str:
     return f"Last known: {found[0].lower()}{found[1:]}"
 
 
+def beside_stator(judged: Judged) -> str:
+    """Return all that is the matter with a motor, where that is not of its stator and channels alone."""
+    return findings_beside_stator(
+        PartCondition(one.part, one.state, one.finding, explained_by=one.explained_by) for one in judged.parts
+    )
+
+
 def _found(judged: Judged, complete: bool) -> str:
+    beside = beside_stator(judged)
+    if beside:
+        return f"{beside[0].upper()}{beside[1:]}"
     where = "" if judged.phase is None else f" in phase {judged.phase}"
     match judged.state:
         case State.UNKNOWN:
@@ -75,10 +110,10 @@ def _found(judged: Judged, complete: bool) -> str:
     if judged.kind is Kind.UNCLEAR:
         if not judged.candidates:
             return "The latest record differs from all before; another one has to confirm it"
-        return f"A change{where} that may be {_either(judged.candidates)}"
-    words = KINDS[judged.kind]
+        return f"A change{where} that may be {_of_kinds(judged, *judged.candidates)}"
+    words = _of_kinds(judged, judged.kind)
     if judged.kind is Kind.SHORTED_TURNS and judged.state is State.WATCH and judged.change == 0.0:
-        return f"{words.capitalize()}{where} were seen, and are gone"
+        return f"{words[0].upper()}{words[1:]}{where} were seen, and are gone"
     return f"{words[0].upper()}{words[1:]}{where}"
 
 
@@ -128,5 +163,5 @@ def expected(
     return f"It likely reaches {level} in about {ahead}, on {day_of(middle_ns)}{between}."
 
 
-def _either(kinds: Sequence[Kind]) -> str:
-    return " or ".join(KINDS.get(kind, kind.value) for kind in kinds)
+def _of_kinds(judged: Judged, *kinds: Kind) -> str:
+    return kinds_in_words(kinds, judged.phase, judged.phase_probabilities, lambda kind: KINDS[Kind(kind)])

@@ -14,6 +14,7 @@ import structlog
 from core.condition.observation import Observation
 from core.diagnosis.errors import DiagnosisError
 from core.machines.parameters import Motor
+from core.machines.table_layout import layout_of
 from core.recordings import RecordingError, read
 from service.alarms.condition_rules import AT_ONCE, ConditionRules
 from service.condition.record_times import ImpossibleTimeError, require_possible_time
@@ -112,7 +113,10 @@ def _observed(task: ObserveTask) -> Iterator[tuple[str, Observation | None]]:
     for one in task.recordings:
         try:
             with task.store.opened(one.digest) as entry:
-                recording = read(entry, most_values=MOST_VALUES)
+                motor = task.motor
+                recording = read(
+                    entry, lenient=motor.reads_leniently, most_values=MOST_VALUES, layout=layout_of(motor)
+                )
             observation = observe(recording, task.motor)
             if observation is not None:
                 # The file may have local time; its diagnosis found out the UTC.

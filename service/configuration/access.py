@@ -9,6 +9,7 @@ from service.configuration.relay_access import AbsolutePath
 
 RoleName = Literal["VIEWER", "OPERATOR", "ENGINEER", "SECADM", "SECAUD"]
 LOOPBACK = ("localhost", "127.0.0.1", "[::1]")
+TokenDays = Annotated[float, Field(ge=0.001, le=3650)]
 HeaderName = Annotated[str, StringConstraints(pattern=r"^[A-Za-z][A-Za-z0-9-]{0,99}$")]
 
 
@@ -28,7 +29,10 @@ class ProxySettings(BaseModel):
 
 
 class OidcSettings(BaseModel):
-    """An OpenID provider: [access.oidc]. roles: the values of roles_claim that give each role."""
+    """An OpenID provider: [access.oidc]. roles: the values of roles_claim that give each role.
+
+    confirmation_days: the tokens of somebody count for so long after the provider last let them in.
+    """
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
@@ -42,6 +46,7 @@ class OidcSettings(BaseModel):
     roles: dict[RoleName, tuple[str, ...]] = Field(default_factory=dict)
     ca: AbsolutePath | None = None
     timeout_s: float = Field(default=5.0, ge=0.1, le=60)
+    confirmation_days: float = Field(default=7.0, ge=0.01, le=365)
 
     @field_validator("issuer", "redirect_url")
     @classmethod
@@ -52,13 +57,22 @@ class OidcSettings(BaseModel):
 
 
 class AccessSettings(BaseModel):
-    """How long logins last, and how many may fail in a row."""
+    """How long logins and tokens last, and how many logins may fail in a row.
+
+    token_days: the longest that a token is taken; "unlimited" lets tokens be made that have no end.
+    use_notice: shown before a login, which acknowledges it. second_factor_roles: those that need one.
+    """
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
     session_idle_minutes: float = Field(default=60.0, ge=1, le=10_080)
     session_hours: float = Field(default=12.0, ge=0.1, le=744)
+    token_days: TokenDays | Literal["unlimited"] = 90.0
     failed_logins: int = Field(default=5, ge=1, le=1000)
     lockout_minutes: float = Field(default=15.0, ge=1, le=1440)
+    use_notice: (
+        Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=4000)] | None
+    ) = None
+    second_factor_roles: frozenset[RoleName] = frozenset()
     proxy: ProxySettings | None = None
     oidc: OidcSettings | None = None

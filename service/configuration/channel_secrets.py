@@ -6,7 +6,6 @@ are handed to the sender alone.
 
 import base64
 import binascii
-import os
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
@@ -20,6 +19,7 @@ from service.configuration.channels import (
     WebhookChannel,
     variable_part,
 )
+from service.configuration.environment import VARIABLES
 
 VARIABLE: Final = "MCC_NOTIFY_"
 """Followed by what the secret is, _ and the channel's name in capitals with _ for -; wins over the file."""
@@ -130,7 +130,7 @@ def _line(name: str, kind: Secret, path: Path | None) -> str | None:
 
 
 def _text(name: str, kind: Secret, path: Path | None) -> str | None:
-    given = os.environ.get(_variable(name, kind))
+    given = VARIABLES.get(_variable(name, kind))
     if given:
         return given
     if path is None:
@@ -149,7 +149,7 @@ def _variable(name: str, kind: Secret) -> str:
 
 def _source(name: str, kind: Secret, path: Path | None) -> str:
     variable = _variable(name, kind)
-    return f"variable {variable}" if os.environ.get(variable) else str(path)
+    return f"variable {variable}" if VARIABLES.get(variable) else str(path)
 
 
 def _missing(name: str, kind: Secret, key: str) -> str:

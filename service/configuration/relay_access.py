@@ -4,7 +4,6 @@ Settings hold paths only. Secrets are read at each connect, from files that only
 the environment. So nothing that prints settings or hands them on can reveal a secret.
 """
 
-import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,6 +12,7 @@ from typing import Annotated, Final, Literal
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, SecretStr
 
 from mms import PASSWORD_RULE, CredentialFileError, TlsConfiguration, TlsVersion, is_password, read_secret
+from service.configuration.environment import VARIABLES
 
 AbsolutePath = Annotated[Path, AfterValidator(Path.absolute)]
 
@@ -23,7 +23,10 @@ _VERSIONS: Final = {"1.2": TlsVersion.TLS_1_2, "1.3": TlsVersion.TLS_1_3}
 
 
 class RelayTls(BaseModel):
-    """Files for TLS with one relay (PEM or DER). port: for TLS, where it is not the port of the SCD."""
+    """Files for TLS with one relay (PEM or DER).
+
+    version: the one that is offered.  port: for TLS, where it is not the port of the SCD.
+    """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -31,7 +34,7 @@ class RelayTls(BaseModel):
     key: AbsolutePath
     pinned: tuple[AbsolutePath, ...] = Field(min_length=1)
     ca: AbsolutePath | None = None
-    minimum_version: Literal["1.2", "1.3"] = "1.2"
+    version: Literal["1.2", "1.3"] = "1.2"
     port: int | None = Field(default=None, ge=1, le=65535)
 
     def configuration(self) -> TlsConfiguration:
@@ -40,7 +43,7 @@ class RelayTls(BaseModel):
             key=self.key,
             pinned=self.pinned,
             ca=self.ca,
-            minimum_version=_VERSIONS[self.minimum_version],
+            version=_VERSIONS[self.version],
         )
 
 
@@ -86,7 +89,7 @@ def clear_passwords(relays: Mapping[str, RelayAccess], names: Iterable[str]) -> 
     found = []
     for name in names:
         access = relays.get(name, RelayAccess())
-        given = access.password_file is not None or f"{PASSWORD_VARIABLE}{name}" in os.environ
+        given = access.password_file is not None or f"{PASSWORD_VARIABLE}{name}" in VARIABLES
         if given and access.tls is None:
             found.append(name)
     return tuple(found)
@@ -96,14 +99,14 @@ def named_in_environment() -> tuple[str, ...]:
     """Return the relays whose password is in the environment."""
     return tuple(
         variable.removeprefix(PASSWORD_VARIABLE)
-        for variable in os.environ
+        for variable in VARIABLES
         if variable.startswith(PASSWORD_VARIABLE)
     )
 
 
 def _password(access: RelayAccess, name: str) -> SecretStr | None:
     variable = f"{PASSWORD_VARIABLE}{name}"
-    spoken = os.environ.get(variable)
+    spoken = VARIABLES.get(variable)
     if spoken is not None:
         if not is_password(spoken):
             raise AccessError(f"environment: {variable}: expected {PASSWORD_RULE}, found something else")

@@ -20,6 +20,7 @@ from service.configuration.alarms import AlarmSettings
 from service.configuration.audit import AuditSettings
 from service.configuration.backup import BackupSettings
 from service.configuration.channels import CHANNEL_PATHS, MailChannel
+from service.configuration.dask import DaskTls
 from service.configuration.gateways.settings import GatewaysSettings
 from service.configuration.notifications import NotificationSettings
 from service.configuration.problems import ENVIRONMENT, ConfigurationError, Problem, Problems
@@ -31,10 +32,19 @@ from service.configuration.settings_problems import Sources, problems_of, unknow
 from service.configuration.toml_lines import TomlLines
 
 MIB, GIB = 1024**2, 1024**3
-PATHS = ("data_directory", "recordings_directory", "scd", "motors", "tls_certificate", "tls_key")
+PATHS = (
+    "data_directory",
+    "recordings_directory",
+    "secrets_key_file",
+    "scd",
+    "motors",
+    "tls_certificate",
+    "tls_key",
+)
 RELAY_PATHS = ("certificate", "key", "ca", "pinned", "password_file")
 GATEWAY_PATHS = ("certificate", "key", "ca", "pinned", "password_file", "trusted")
 ACCESS_PATHS = ("ca", "client_secret_file")
+DASK_PATHS = ("ca", "certificate", "key")
 
 
 class SettingsError(ConfigurationError):
@@ -79,6 +89,9 @@ class Settings(BaseSettings):
     recordings_directory: AbsolutePath = Field(
         default_factory=lambda known: known["data_directory"] / "recordings"
     )
+    secrets_key_file: AbsolutePath = Field(
+        default_factory=lambda known: known["data_directory"] / "secrets.key"
+    )
     recordings_url: str | None = Field(default=None, max_length=2000)
     database_url: str = Field(default_factory=lambda known: sqlite_url(known["data_directory"]), repr=False)
 
@@ -90,6 +103,7 @@ class Settings(BaseSettings):
     job_timeout_s: float = Field(default=60.0, ge=0.1, le=3600)
     job_attempts: int = Field(default=3, ge=1, le=20)
     job_retry_delay_s: float = Field(default=2.0, ge=0, le=3600)
+    dask: DaskTls | None = None
 
     retention: RetentionSettings = Field(default_factory=RetentionSettings)
     backup: BackupSettings = Field(default_factory=BackupSettings)
@@ -110,7 +124,7 @@ class Settings(BaseSettings):
     record_timeout_s: float = Field(default=30.0, ge=0.01, le=3600)
     poll_period_s: float = Field(default=5.0, ge=0.01, le=SECONDS_PER_DAY)
     quarantine_s: float = Field(default=60.0, ge=0.1, le=SECONDS_PER_DAY)
-    long_record_days: float = Field(default=0.0, ge=0, le=365)
+    long_record_days: float = Field(default=7.0, ge=0, le=365)
     long_record_s: float = Field(default=10.0, ge=1, le=30)
     text_report_period_s: float = Field(default=900.0, ge=0, le=SECONDS_PER_DAY)
     metering_period_s: float = Field(default=10.0, ge=0, le=SECONDS_PER_DAY)
@@ -249,6 +263,8 @@ def _table(text: str, config: Path) -> dict[str, object]:
         table["backup"] = {**backup, "directory": config.absolute().parent / backup["directory"]}
     if isinstance(table.get("access"), dict):
         table["access"] = _anchored(table["access"], ACCESS_PATHS, config.absolute().parent)
+    if isinstance(table.get("dask"), dict):
+        table["dask"] = _anchored(table["dask"], DASK_PATHS, config.absolute().parent)
     _anchor_each(table, "relays", RELAY_PATHS, config.absolute().parent)
     _anchor_each(table.get("notifications"), "channels", CHANNEL_PATHS, config.absolute().parent)
     _anchor_each(table, "audit", CHANNEL_PATHS, config.absolute().parent)

@@ -11,18 +11,21 @@ from pathlib import Path
 
 from core.error_words import one_line
 from service.access.bearer_secrets import digest_of, new_token
+from service.access.identities import identity_of_token
 from service.access.login_links import address_of, is_good, new_login_link
+from service.access.tokens import end_of
 from service.client.credentials import write_secret
+from service.configuration.access import AccessSettings
 from service.configuration.settings import Settings
+from service.process.private_files import written_privately
 from service.storage import Repository, connect, migrate
 from service.storage.answering import DatabaseUnusableError, answering
 from service.storage.errors import UserExistsError
-from service.storage.records import Actor, Role
+from service.storage.records import COMMAND_LINE, Actor, Role
 
 NAME = "demo"
-ROLES = (Role.VIEWER, Role.OPERATOR, Role.ENGINEER, Role.SECADM, Role.SECAUD)
-MOST_TOKENS = 100
-BY = Actor("mcc demo", "command line")
+ROLES = (Role.VIEWER, Role.OPERATOR, Role.ENGINEER, Role.SECADM)
+BY = Actor("mcc demo", COMMAND_LINE)
 
 
 def demo_token(database_url: str, kept: str | None = None) -> str:
@@ -59,26 +62,32 @@ class LoginLinks:
 
 
 def _token(repository: Repository, kept: str | None) -> str:
-    if kept is not None and repository.token_with(digest_of(kept)) is not None:
+    access, now_ns = AccessSettings(), time.time_ns()
+    if kept is not None and identity_of_token(repository, access, kept, now_ns=now_ns) is not None:
         return kept
-    now_ns = time.time_ns()
     with suppress(UserExistsError):
         repository.add_user(NAME, ROLES, password=None, by=BY, now_ns=now_ns)
-    for token in repository.tokens(user=NAME, limit=MOST_TOKENS).items:
-        repository.revoke_token(token.id, user=NAME, by=BY, now_ns=now_ns)
+    repository.revoke_tokens(NAME, by=BY, now_ns=now_ns)
     secret = new_token()
-    digest = digest_of(secret)
-    repository.add_token(NAME, "mcc demo", digest, scope=None, expires_ns=None, by=BY, now_ns=now_ns)
+    repository.add_token(
+        NAME,
+        "mcc demo",
+        digest_of(secret),
+        scope=None,
+        expires_ns=end_of(None, access, parent=None, now_ns=now_ns),
+        by=BY,
+        now_ns=now_ns,
+    )
     return secret
 
 
 def main(file: Path) -> None:
     """Have a file with a token of the demo's user; end with one line where the database does not answer."""
     settings = Settings.load()
-    settings.data_directory.mkdir(parents=True, exist_ok=True)
     kept = file.read_text(encoding="utf-8").strip() if file.exists() else None
     try:
-        with answering(settings.database_url):
+        with written_privately(), answering(settings.database_url):
+            settings.data_directory.mkdir(parents=True, exist_ok=True)
             token = demo_token(settings.database_url, kept)
     except DatabaseUnusableError as error:
         sys.exit(one_line(str(error)))

@@ -19,7 +19,11 @@ class Play:
 STEADY = Play(SCENARIO, MOTORS)
 """Motors that stay as they are, some of them faulty."""
 
-MONTH_OF_CHANGES = Play(MONTH, MONTH_MOTORS, {"MCC_STALE_AFTER_DAYS": "60", "MCC_TEXT_REPORT_PERIOD_S": "0"})
+MONTH_OF_CHANGES = Play(
+    MONTH,
+    MONTH_MOTORS,
+    {"MCC_STALE_AFTER_DAYS": "60", "MCC_TEXT_REPORT_PERIOD_S": "0", "MCC_LONG_RECORD_DAYS": "0"},
+)
 """A month in which a fault and a sensor develop. Its records are up to a month old, and are not stale.
 
-Text reports are not fetched: their clocks leap."""
+Text reports are not fetched, and no long records are made: the clocks leap."""

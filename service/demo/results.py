@@ -6,13 +6,14 @@ from dataclasses import dataclass, field
 from rich.box import SIMPLE_HEAD
 from rich.text import Text
 
+from core.diagnosis.phase_words import turns_phase_in_words
 from core.quantity_text import plain
 from service.client.rest_client import Document
 from service.client.tables import FittedTable
 from service.client.verdicts import interval, load, percent, verdict_text
 from service.demo.truth import Truth
 
-FOOTNOTE = "interval: noise, sensors and parameters; see docs/explanation/diagnosis.md"
+FOOTNOTE = "interval: from all causes; see docs/explanation/diagnosis.md"
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +81,7 @@ def table(motors: Sequence[DemoMotor]) -> FittedTable:
     shown.add_column("motor", no_wrap=True)
     for heading in ("truth", "verdict"):
         shown.add_column(heading)  # these wrap on a narrow terminal, so that the figures stay whole
-    for heading in ("mu_f %", "95 %\ninterval", "seen\nfrom %", "load", "trigger to\ndiagnosis s"):
+    for heading in ("mu_f %", "95 %\ninterval", "detection\nlimit %", "load", "trigger to\ndiagnosis s"):
         shown.add_column(heading, justify="right", no_wrap=True)
     for motor in motors:
         for number, diagnosis in enumerate(motor.diagnoses):
@@ -113,7 +114,7 @@ def _row(diagnosis: DemoDiagnosis) -> tuple[str | Text, ...]:
     if found is None:
         return Text(diagnosis.reason or "failed", style="red"), "", "", "", "", ""
     return (
-        verdict_text(str(found["verdict"]), found["phase"]),
+        verdict_text(str(found["verdict"]), turns_phase_in_words(found)),
         percent(found["mu_f"]),
         interval(found["mu_f_ci95"]),
         percent(found["detection_limit"]),

@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
+from core.motor_condition.parts import Part, parts_of
 from core.rotor.finding import RotorState
 from scl import DEMO_PLANT_SCD
 from service.client.conditions import condition_of
@@ -50,14 +51,15 @@ class MotorStatus:
 
     @property
     def is_right(self) -> bool | None:
-        """Whether what is said of the motor is true; None while nothing is said yet.
+        """Whether what is said of the motor's stator is true; None while nothing is said yet.
 
         It is whether the condition calls it faulty, and in which phase. While its reference is being learnt,
         verdict and phase of the latest record count too, because there is little else. A fault that the
         condition has not seen yet is neither right nor wrong.
         """
         truth = self.truth.verdict, self.truth.phase
-        state, phase = self.condition["state"], self.condition["phase"]
+        of_stator = [one.state for one in parts_of(self.condition) if one.part is Part.STATOR]
+        state, phase = of_stator[0] if of_stator else self.condition["state"], self.condition["phase"]
         if state == "fault":
             return (state, phase) == truth
         reference = self.condition["reference"]

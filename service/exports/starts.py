@@ -182,7 +182,7 @@ TABLE: Table[ToldStart] = Table(
             "what the start shows of the rotor's cage",
             lambda told: _told(told.entry.filled, "sideband", "state"),
         ),
-        _of("sideband", "severity_dB", "dB", "asymmetry of the rotor's cage", column="rotor_severity_dB"),
+        _of("sideband", "severity_dB", "dB", "rotor bar severity", column="rotor_severity_dB"),
         _end("sideband", "severity_dB_ci95", 0, "dB", column="rotor_severity_dB_ci95_low"),
         _end("sideband", "severity_dB_ci95", 1, "dB", column="rotor_severity_dB_ci95_high"),
         _of(

@@ -43,14 +43,14 @@ def write_table(file: Path, heading: Sequence[str], rows: Iterable[Sequence[obje
     replace_file(file, text.getvalue().encode())
 
 
-def replace_file(file: Path, content: bytes, *, private: bool = False) -> None:
+def replace_file(file: Path, content: bytes) -> None:
     """Replace the file at once: a reader, or a crash, sees the old or the new one. Raises OSError.
 
-    private: its owner alone may read it.
+    Its owner alone may read it.
     """
     written = file.with_suffix(".new")
     written.unlink(missing_ok=True)
-    written.touch(mode=0o600 if private else 0o644)
+    written.touch(mode=0o600)
     with written.open("wb") as output:
         output.write(content)
         output.flush()

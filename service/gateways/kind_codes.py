@@ -15,5 +15,10 @@ KIND_CODES: Final = (
     Kind.PARAMETERS,
     Kind.ROTOR,
     Kind.UNCLEAR,
+    Kind.ASYMMETRY,
+    Kind.STARTS,
+    Kind.THERMAL,
+    Kind.AIR_GAP,
+    Kind.OTHER_LOAD,
 )
 ROTOR_CODES: Final = (None, RotorState.WATCH, RotorState.FAULT)

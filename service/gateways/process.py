@@ -6,12 +6,13 @@ What does not work in it goes to the service as lines of JSON on the standard ou
 import json
 import os
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from typing import BinaryIO
 
 import structlog
 
 from service.gateways.context import GatewayContext
+from service.process.capabilities import Capability
 from service.storage import Repository, connect
 from service.storage.transaction_limits import limits_of
 from service.supervision.child import begin_child
@@ -67,20 +68,25 @@ KINDS: Mapping[str, Callable[[], Run]] = {
 }
 """Each loads its gateway, with its library, in its own process alone."""
 
-RAW_FRAMES = {"goose"}
-"""Kinds that hear Ethernet frames, and keep the capability for that alone."""
+NEEDED: Mapping[str, Collection[Capability]] = {
+    "goose": [Capability.NET_RAW],
+    "iec104": [Capability.NET_BIND_SERVICE],
+    "iec61850": [Capability.NET_BIND_SERVICE],
+    "modbus": [Capability.NET_BIND_SERVICE],
+    "opcua": [Capability.NET_BIND_SERVICE],
+}
+"""Capabilities that kinds keep: to hear Ethernet frames, and to listen at ports such as 102 and 502."""
 
 
 def main() -> None:
     """Run the gateway that the command line names until the service is gone."""
     kind = sys.argv[1]
-    run = KINDS[kind]()
-    child = begin_child(f"gateway {kind}", hears_raw_frames=kind in RAW_FRAMES)
+    child = begin_child(f"gateway {kind}", needs=NEEDED.get(kind, ()))
     settings = child.settings
     with _private_output() as output:
         repository = Repository(connect(settings.database_url, limits=limits_of(settings)))
         try:
-            run(GatewayContext(settings, repository, child.parent_gone, ProblemTeller(output)))
+            KINDS[kind]()(GatewayContext(settings, repository, child.parent_gone, ProblemTeller(output)))
         except Exception:  # the service starts it again
             log.exception("the gateway failed")
             # Python would wait for the thread that reads the service's pipe, and abort.

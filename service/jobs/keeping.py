@@ -49,14 +49,21 @@ def keep_diagnosed(
     if not kept:
         log.warning("a diagnosis came after the lease was lost", recording=job.recording_id)
         return
-    if made.rotor is not None:
+    if made.rotor is not None or claimed.is_repetition:
         repository.settle_rotor_alarm(claimed.motor, now_ns=now_ns)
     if start is not None or claimed.is_repetition:
         repository.settle_start_alarms_of(claimed.motor, now_ns=now_ns)
+    if observation is None or claimed.is_repetition:
+        repository.settle_motor_condition(claimed.motor, now_ns=now_ns)  # no fold will do so
     is_first = not claimed.is_repetition  # a repetition tells of the clock as it was
     if is_first and claimed.ied is not None and claimed.triggered_ns is not None:
         record = TriggeredRecord(
-            claimed.ied, time_zone, made.recorded_ns, claimed.triggered_ns, made.has_time_code
+            claimed.ied,
+            time_zone,
+            made.recorded_ns,
+            claimed.triggered_ns,
+            made.has_time_code,
+            repository.preceding_offset_ns(claimed.ied, claimed.triggered_ns),
         )
         note_relay_time(repository, record, now_ns)
     operation = made.diagnosis.operation

@@ -29,6 +29,8 @@ class TriggeredRecord:
     time_zone: in which the motors file says that the relay's clock runs; None for UTC.
     recorded_ns: its time [ns UTC].  triggered_ns: of its trigger [ns UTC].
     has_time_code: whether the record itself tells its time zone.
+    preceding_offset_ns: how far the relay's triggered record before this one was off its trigger [ns]; None
+    where there is none.
     """
 
     relay: str
@@ -36,11 +38,19 @@ class TriggeredRecord:
     recorded_ns: int
     triggered_ns: int
     has_time_code: bool
+    preceding_offset_ns: int | None = None
 
     @property
     def is_right(self) -> bool:
         """Tell whether the record's time is that of its trigger."""
         return abs(self.recorded_ns - self.triggered_ns) <= TOLERANCE_NS
+
+    @property
+    def is_steady(self) -> bool:
+        """Tell whether the record before was as far off, if there is one: a clock that was set is not."""
+        offset_ns = self.recorded_ns - self.triggered_ns
+        before_ns = self.preceding_offset_ns
+        return before_ns is None or abs(offset_ns - before_ns) <= 2 * TOLERANCE_NS
 
     def wrong_zone(self) -> str | None:
         """Return what is wrong with the time zone, and the cure; None where it is right."""
@@ -73,9 +83,15 @@ class TriggeredRecord:
 
 
 def note_relay_time(repository: Repository, record: TriggeredRecord, now_ns: int) -> None:
-    """Raise the alarm of a relay whose clock runs in another zone, or clear it. Raises SQLAlchemyError."""
+    """Raise the alarm of a relay whose clock runs in another zone, or clear it. Raises SQLAlchemyError.
+
+    A record whose time is off by something else than the one before raises none: a clock was corrected, of
+    the relay or of the service, and the next record shows which time holds.
+    """
     wrong = record.wrong_zone()
-    if wrong is not None:
+    if wrong is not None and not record.is_steady:
+        log.info("the relay's clock or the service's was set", relay=record.relay, reason=wrong)
+    elif wrong is not None:
         repository.raise_alarm(record.relay, AlarmKind.TIME_ZONE, "", wrong, now_ns=now_ns)
         log.warning("the relay's clock runs in another time zone", relay=record.relay, reason=wrong)
     elif record.is_right:

@@ -25,7 +25,7 @@ from service.jobs.listening import JobListener, usual_poll_period_s
 from service.jobs.task import DiagnosisTask, Outcome, Rejected, Task
 from service.jobs.worker_pool import WorkerPool
 from service.jobs.worker_process import follow_service
-from service.jobs.workers import NoWorkersError, Workers
+from service.jobs.workers import NoWorkersError, WorkerFailedError, Workers
 from service.recording_store.errors import RecordingStoreError, StoreUnreachableError
 from service.recording_store.store import RecordingStore
 from service.storage.errors import NotFoundError, RunnerEndedError, UnstorableDiagnosisError
@@ -312,6 +312,8 @@ class JobRunner:
             self._retry(claimed, f"took longer than {self._limits.job_timeout_s:g} s")
         elif isinstance(error, ProcessExpired):
             self._retry(claimed, f"the worker process died (exit code {error.exitcode})")
+        elif isinstance(error, WorkerFailedError):
+            self._retry(claimed, str(error))
         else:
             self._retry(claimed, f"{type(error).__name__}: {error}")
 

@@ -10,6 +10,7 @@ from zoneinfo import ZoneInfo
 from core.commissioning.errors import CommissioningError
 from core.diagnosis.errors import DiagnosisError
 from core.machines.parameters import Motor
+from core.machines.table_layout import layout_of
 from core.operation import Operation
 from core.recordings import Recording, RecordingError, read
 from core.recordings.local_time import in_utc
@@ -41,9 +42,13 @@ def diagnose_recording(task: DiagnosisTask) -> Outcome:
 
     try:
         with task.recording.opened() as entry:
-            recording = read(entry, most_values=MOST_VALUES)
+            motor = task.motor
+            recording = read(
+                entry, lenient=motor.reads_leniently, most_values=MOST_VALUES, layout=layout_of(motor)
+            )
         if task.time_zone is not None:
             recording = in_utc(recording, ZoneInfo(task.time_zone), task.near_ns)
+        recorded_ns = recording.trigger_time_ns  # a lenient reader may have found none
         examined = examine(
             recording,
             task.motor,
@@ -59,7 +64,7 @@ def diagnose_recording(task: DiagnosisTask) -> Outcome:
         start = _measured(recording, task.motor)
     return Diagnosed(
         examined.diagnosis,
-        recording.trigger_time_ns,
+        recorded_ns,
         examined.observation,
         remark,
         recording.has_time_code,
@@ -67,7 +72,7 @@ def diagnose_recording(task: DiagnosisTask) -> Outcome:
         examined.rotor,
         examined.supply,
         _length(recording),
-        classify_record(examined, task.motor),
+        classify_record(examined),
         examined.eccentricity,
         examined.pulsation,
     )

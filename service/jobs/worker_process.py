@@ -14,7 +14,7 @@ from typing import Final
 
 from pebble import CONSTS
 
-from service.process.capabilities import Capability, give_up
+from service.process.capabilities import keep_only
 from service.process.termination import leave_to_parent
 
 NICENESS: Final = 5
@@ -30,8 +30,8 @@ up twice. The library waits for a minute each time.
 
 def prepare(prepare_worker: Callable[[], None], prepared: Semaphore) -> None:
     """Prepare a worker, in that worker; tell the pool when it is done."""
-    # It reads what relays send, and needs no socket.
-    give_up([Capability.NET_RAW])
+    # It reads what relays send, and needs no right but its user's.
+    keep_only([])
     os.nice(NICENESS)
     CONSTS.channel_lock_timeout = LOCK_TIMEOUT_S
     prepare_worker()

@@ -12,6 +12,10 @@ class NoWorkersError(RuntimeError):
     """There are no workers at the moment; there will be."""
 
 
+class WorkerFailedError(RuntimeError):
+    """A worker elsewhere has failed; it says with what."""
+
+
 class Workers(Protocol):
     """Processes that do tasks, behind futures. For use by one thread."""
 

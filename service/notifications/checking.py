@@ -11,6 +11,7 @@ from core.error_words import nearest, shown
 from service.alarms.kinds import AlarmKind
 from service.configuration.channel_secrets import ChannelSecretError, require_secrets, unknown_channels
 from service.configuration.channels import AppriseChannel, CommandChannel, MailChannel, WebhookChannel
+from service.configuration.environment import VARIABLES
 from service.configuration.notifications import DAYS, NotificationSettings, Priority, Route
 from service.configuration.problems import ENVIRONMENT, Problem
 from service.configuration.reports import ReportSettings
@@ -78,7 +79,7 @@ def channel_problems(settings: NotificationSettings, source: str) -> Iterator[Pr
         if isinstance(channel, CommandChannel) and not os.access(channel.command[0], os.X_OK):
             found = f"{channel.command[0]}, which is none"
             yield Problem(source, f"{field}.command", "a program that can be run", found)
-    for variable in unknown_channels(settings.channels, os.environ):
+    for variable in unknown_channels(settings.channels, VARIABLES):
         expected = "the name of a channel in capitals at its end"
         yield Problem(ENVIRONMENT, variable, expected, "no channel of this name")
 

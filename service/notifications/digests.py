@@ -7,6 +7,7 @@ from datetime import datetime, timedelta
 from core.condition.kinds import State
 from core.units import NANOSECONDS_PER_SECOND
 from service.condition.staleness import is_stale, stale_after_ns
+from service.condition.wording import beside_stator
 from service.configuration.notifications import Digest
 from service.configuration.settings import Settings
 from service.notifications.due import due_now
@@ -97,12 +98,15 @@ def _is_stale(motor: MotorHealth, settings: Settings, now_ns: int) -> bool:
 
 def _facts(motor: MotorHealth) -> Mapping[str, object]:
     condition = motor.condition
+    likely = condition.phase_probabilities
     return {
         "motor": motor.motor.name,
         "site": motor.motor.site,
         "state": condition.state.value,
         "kind": condition.kind.value,
+        "finding": beside_stator(condition),
         "phase": condition.phase,
+        "phase_probabilities": None if likely is None else list(likely),
         "mu_f": condition.mu_f,
         "mu_f_ci95": None if condition.mu_f_ci95 is None else list(condition.mu_f_ci95),
         "since_ns": condition.since_ns,

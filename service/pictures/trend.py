@@ -83,7 +83,7 @@ def trend_picture(
     _axes(drawing, frame, zone, look)
     _level(drawing, frame, limit, "motor's limit", look.fault, "5 4")
     _level(drawing, frame, None if ahead == limit else ahead, "next level", look.watch, "5 4")
-    _level(drawing, frame, detectable, "seen from", look.muted, "2 3")
+    _level(drawing, frame, detectable, "detection limit", look.muted, "2 3")
     _marks(drawing, frame, marks, look)
     _curve(drawing, frame, known, look)
     _latest(drawing, known[-1], zone, look)

@@ -24,7 +24,7 @@ from service.plant.binding import Binding, bindings
 from service.plant.errors import PlantError
 from service.plant.model import Bus, Plant, PlantMotor, Relay, Site
 from service.plant.motors_file import BusEntry, MotorEntry, MotorsFile, read_motors_file
-from service.plant.relay_entry import RelayEntry
+from service.plant.relay_entry import Reading, RelayEntry
 from service.plant.relays import omissions, read_own_scl, relay_of_ied, relay_without_scl, scl_problem
 from service.plant.sensor_classes import typical_sensors
 
@@ -162,7 +162,7 @@ def _relays(
     ieds = {} if configuration is None else {ied.name: ied for ied in configuration.ieds}
     relays: dict[str, Relay] = {}
     for one in bound:
-        motor, entry = told.motors.get(one.motor), told.relays.get(one.relay, RelayEntry(one.relay))
+        motor, entry = told.motors.get(one.motor), _entry(one.relay, told)
         if motor is None or one.relay in relays:
             continue
         with problems.collected():
@@ -190,6 +190,10 @@ def _relays(
     return relays
 
 
+def _entry(relay: str, told: MotorsFile) -> RelayEntry:
+    return told.relays.get(relay, RelayEntry(relay))
+
+
 def _motors(
     bound: Iterable[Binding], told: MotorsFile, relays: Mapping[str, Relay], problems: Problems
 ) -> tuple[PlantMotor, ...]:
@@ -207,6 +211,8 @@ def _motors(
             problems.extend(_in_motor(each, entry, told) for each in (error, *error.others))
         else:
             problems.warnings.extend(_unusual(data[entry.name], told))
+            if relay is not None and _entry(relay.name, told).reading is Reading.LENIENT:
+                data[entry.name] = replace(data[entry.name], reads_leniently=True)
     return tuple(
         _plant_motor(one, told.motors[name], data[name]) for name, one in binding_of.items() if name in data
     )

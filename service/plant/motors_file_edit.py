@@ -10,7 +10,7 @@ import shutil
 import tempfile
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from difflib import unified_diff
 from pathlib import Path
 
@@ -23,7 +23,9 @@ from core.error_words import one_line
 from core.machines.parameters import ParametersSource
 from service.plant.errors import plant_error
 
-WRITTEN = ("parameters", "intervals")
+CHANGE = ("deep_bars", "leakage_saturation")
+"""Tables of what changes from a start to running."""
+WRITTEN = ("parameters", "intervals", *CHANGE)
 _HEADER = re.compile(r"\s*\[")
 _MOTOR = re.compile(r"\s*\[\[\s*motor\s*\]\]")
 _BELOW = re.compile(r"\s*\[{1,2}\s*motor\s*\.")
@@ -35,12 +37,14 @@ class EstimatedParameters:
     """What is written of a motor: values and 95 % intervals by the names of MachineParameters.
 
     remarks: comments on values that were not estimated, by name.  origin: what they follow from, in words.
+    change: figures of the tables in CHANGE, by table; those that it has not are taken away.
     """
 
     values: Mapping[str, float]
     intervals: Mapping[str, Interval]
     remarks: Mapping[str, str]
     origin: str
+    change: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -179,6 +183,13 @@ def _enter(table: Table | InlineTable, estimated: EstimatedParameters) -> None:
             entry = parameters.item(name)
             if isinstance(entry, Item) and (name == "source" or not entry.trivia.comment):
                 entry.comment(one_line(remark))
+    for key in CHANGE:
+        if key not in estimated.change:
+            table.pop(key, None)
+            continue
+        changing = _subtable(table, key)
+        for name, value in estimated.change[key].items():
+            changing[name] = _rounded(value)
     if not estimated.intervals:
         table.pop("intervals", None)
         return

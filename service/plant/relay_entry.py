@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import dataclass
+from enum import StrEnum
 from ipaddress import ip_address
 from pathlib import Path
 
@@ -15,12 +16,24 @@ RELAY_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,63}")
 """Relays are named in addresses of the REST API, in variables of the environment and in file names."""
 
 
+class Reading(StrEnum):
+    """How the recordings of a relay are read.
+
+    STRICT: what contradicts itself is refused.
+    LENIENT: what can be mended without a guess at values is mended, and told with each diagnosis.
+    """
+
+    STRICT = "strict"
+    LENIENT = "lenient"
+
+
 @dataclass(frozen=True, slots=True)
 class RelayEntry:
     """What the file says of one relay; None where it says nothing.
 
     scl: its CID, IID or ICD.
     time_zone: IANA name of the zone in which its clock runs; None for UTC.
+    reading: how its recordings are read.
     """
 
     name: str
@@ -31,6 +44,7 @@ class RelayEntry:
     time_zone: str | None = None
     manufacturer: str | None = None
     type: str | None = None
+    reading: Reading = Reading.STRICT
 
 
 def relay_entry(table: PlantTable, name: str) -> RelayEntry:
@@ -47,9 +61,21 @@ def relay_entry(table: PlantTable, name: str) -> RelayEntry:
         time_zone=_time_zone(table),
         manufacturer=table.text("manufacturer", "the name of the relay's manufacturer"),
         type=table.text("type", "the relay's type"),
+        reading=_reading(table),
     )
     table.end()
     return entry
+
+
+def _reading(table: PlantTable) -> Reading:
+    value = table.take("reading")
+    if value is None:
+        return Reading.STRICT
+    try:
+        return Reading(str(value))
+    except ValueError:
+        table.refuse("reading", " or ".join(f'"{word}"' for word in Reading), value)
+        return Reading.STRICT
 
 
 def _host(table: PlantTable) -> str | None:

@@ -37,6 +37,12 @@ class Schedule:
             raise ValueError("a cron expression that some day comes true") from error
         return schedule
 
+    def in_words(self) -> str:
+        """Return when that is: "every minute", "at 06:00 every day (UTC)"."""
+        words = CronSim(self.expression, datetime(2000, 1, 1, tzinfo=UTC)).explain()
+        zone = " (UTC)" if any(letter.isdigit() for letter in words) else ""
+        return f"{words[:1].lower()}{words[1:]}{zone}"
+
     def next_after(self, time_ns: int) -> int:
         """Return the first time later than `time_ns` [ns UTC]."""
         return next(self.times_after(time_ns))

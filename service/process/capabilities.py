@@ -9,11 +9,14 @@ from typing import Final
 
 _VERSION_3: Final = 0x20080522
 _WORDS: Final = 2
+_SET_NO_NEW_PRIVILEGES: Final = 38
 
 
 class Capability(IntEnum):
     """Those that a process of the service may have use for."""
 
+    NET_BIND_SERVICE = 10
+    """Ports below 1024."""
     NET_RAW = 13
     """Raw sockets."""
 
@@ -33,24 +36,14 @@ class _Word(ctypes.Structure):
 def keep_only(kept: Collection[Capability]) -> None:
     """Give up all capabilities but these. Threads and processes that this thread starts have no others.
 
-    Raises OSError.
+    No program that is started can bring one back, also not as root or by a file with capabilities. Nothing is
+    inheritable then, so that nothing is ambient either. Raises OSError.
     """
-    _limit(sum(1 << one for one in kept))
-
-
-def give_up(given_up: Collection[Capability]) -> None:
-    """Give up these capabilities, in this thread and what it starts.
-
-    Raises OSError.
-    """
-    _limit(~sum(1 << one for one in given_up))
-
-
-def _limit(allowed: int) -> None:
-    """Keep what is permitted and allowed. Nothing is inheritable then, so that nothing is ambient either."""
     if sys.platform != "linux":
         return
+    allowed = sum(1 << one for one in kept)
     libc = ctypes.CDLL(None, use_errno=True)
+    _checked(libc.prctl(_SET_NO_NEW_PRIVILEGES, 1, 0, 0, 0))
     header, words = _Header(_VERSION_3, 0), (_Word * _WORDS)()
     _checked(libc.capget(ctypes.byref(header), words))
     given_up = False

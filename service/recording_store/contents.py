@@ -6,9 +6,10 @@ from dataclasses import dataclass
 from hashlib import file_digest, sha256
 from pathlib import Path
 
+from core.recordings.reading import SUFFIXES
 from service.recording_store.errors import RecordingStoreError
 
-ENTRY_SUFFIXES = (".CFG", ".CFF", ".CEV")
+ENTRY_SUFFIXES = tuple(suffix.upper() for suffix in SUFFIXES)
 WAVEFORM_SUFFIXES = (*ENTRY_SUFFIXES, ".DAT")
 MAX_NAME_LENGTH = 100
 _DIGEST = re.compile(r"[0-9a-f]{64}")
@@ -75,7 +76,7 @@ def content_directory(root: Path, digest: str) -> Path:
 
 
 def entry_name(names: Iterable[str]) -> str:
-    """Return the file that a reader opens first (.CFG, .CFF or .CEV). Raises RecordingStoreError."""
+    """Return the file that a reader opens first (ENTRY_SUFFIXES). Raises RecordingStoreError."""
     entries = sorted(name for name in names if Path(name).suffix in ENTRY_SUFFIXES)
     if len(entries) != 1:
         raise RecordingStoreError(

@@ -29,7 +29,7 @@ class StoredRecording:
 
     @property
     def entry_name(self) -> str:
-        """Return the file that a reader opens first (.CFG, .CFF or .CEV)."""
+        """Return the file that a reader opens first."""
         return entry_name(file.name for file in self.files)
 
     @property

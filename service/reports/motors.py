@@ -4,6 +4,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 from core.condition.kinds import Kind, State
+from core.motor_condition.parts import RANKS
 from core.time_words import clock, day
 from service.condition.staleness import Missing, missing, stale_after_ns
 from service.condition.wording import advice_now, expected, finding, level_ahead, since
@@ -13,7 +14,6 @@ from service.storage import Repository
 from service.storage.records import ConditionFigures, ConditionPoint, MotorHealth
 
 PAGE = 500
-URGENCY = {State.FAULT: 0, State.WATCH: 1, State.UNKNOWN: 2, State.HEALTHY: 3}
 UNKNOWN = ConditionFigures(state=State.UNKNOWN, kind=Kind.NONE)
 NOT_RUNNING, STALE = "not running", "no recent record"
 
@@ -84,13 +84,8 @@ class ReportedMotor:
 
     @property
     def detectable(self) -> float | None:
-        """Return the least change that would be seen; None where it is not known."""
+        """Return the detection limit of a change; None where it is not known."""
         return number(self.reference.get("detectable"))
-
-    @property
-    def standing_path_ratio(self) -> float:
-        """Return the path of the turns that would explain the standing asymmetry; 0 if unknown."""
-        return number(self.reference.get("standing_path_ratio")) or 0.0
 
     @property
     def since_ns(self) -> int | None:
@@ -139,7 +134,7 @@ def _data(why: Missing | None, as_of_ns: int | None) -> str:
 
 
 def _attention(motor: ReportedMotor) -> tuple[int, int, float, str]:
-    return URGENCY[motor.said.state], motor.data != STALE, -(motor.said.mu_f or 0.0), motor.name
+    return RANKS[motor.said.state], motor.data != STALE, -(motor.said.mu_f or 0.0), motor.name
 
 
 def _all(repository: Repository) -> Sequence[MotorHealth]:

@@ -31,6 +31,7 @@ def delete_recording(
     deletion = repository.delete_recording(recording_id, reason, by=by, now_ns=now_ns)
     repository.settle_rotor_alarm(deletion.motor, now_ns=now_ns)
     repository.settle_start_alarms_of(deletion.motor, now_ns=now_ns)
+    repository.settle_motor_condition(deletion.motor, now_ns=now_ns)
     log.info("recording deleted", recording=recording_id, motor=deletion.motor, reason=reason)
     if deletion.digest is not None:
         remove_discarded_folder_if_possible(repository, store, deletion.digest)

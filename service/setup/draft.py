@@ -1,7 +1,7 @@
-"""A plant as far as its SCL files or its relays tell it: relays with their motors, to be filled in."""
+"""A plant as far as a list, its SCL files or its relays tell it: relays with motors, to be filled in."""
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -26,7 +26,10 @@ class DraftRelay:
     host: None where its SCL file has the address.
     needs_host: whether no source tells the address.
     motor: name of the motor as the SCD has it, else one made of the relay's name.
+    has_motor_name: whether a source has the name of the motor.
     by_substation: whether the SCD binds motor and relay.
+    site: where they are; empty where no source tells it.
+    plate: what is known of the nameplate, by the keys of the motors file.
     told: what is known of the relay, in words.
     """
 
@@ -42,6 +45,9 @@ class DraftRelay:
     by_substation: bool = False
     in_scd: bool = False
     told: tuple[str, ...] = ()
+    has_motor_name: bool = False
+    site: str = ""
+    plate: Mapping[str, str | float | int] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +122,7 @@ def draft_of_files(files: Sequence[scl.Scl]) -> Draft:
             continue
         ied = named[0]
         is_template = ied.name == TEMPLATE
-        name = _name(configuration.path.stem if is_template else ied.name, relays)
+        name = free_name(configuration.path.stem if is_template else ied.name, relays)
         address = None if is_template else _address(configuration, ied)
         relays.append(
             DraftRelay(
@@ -171,7 +177,7 @@ def draft_of_answers(answers: Iterable[RelaySurvey]) -> Draft:
     relays: list[DraftRelay] = []
     for answer in answers:
         devices = () if answer.offer is None else answer.offer.devices
-        name = _name(_ied_name(devices) or answer.relay.name, relays)
+        name = free_name(_ied_name(devices) or answer.relay.name, relays)
         plate = answer.name_plate or {}
         relays.append(
             DraftRelay(
@@ -231,7 +237,7 @@ def _ied_name(devices: Sequence[str]) -> str:
     return ""
 
 
-def _name(wanted: str, relays: Sequence[DraftRelay]) -> str:
+def free_name(wanted: str, relays: Sequence[DraftRelay]) -> str:
     """Return a name that a relay may have and none has yet."""
     plain = re.sub(r"[^A-Za-z0-9_.-]", "_", wanted)[:60].lstrip("_.-")
     name = plain if RELAY_NAME.fullmatch(plain) else f"R{len(relays) + 1}"

@@ -103,7 +103,7 @@ def _relay_lines(relay: DraftRelay) -> Iterator[str]:
         yield "# host = ...    # where it is not the address of its SCL file"
     if relay.port is not None:
         yield f"port = {relay.port}"
-    for key, value in (("manufacturer", relay.manufacturer), ("type", relay.type)):
+    for key, value in (("site", relay.site), ("manufacturer", relay.manufacturer), ("type", relay.type)):
         if value:
             yield f"{key} = {_quoted(value)}"
     yield from _time_zone_lines()
@@ -119,19 +119,30 @@ def _motor_lines(relay: DraftRelay) -> Iterator[str]:
     if relay.by_substation:
         yield f"name = {_quoted(relay.motor)}    # protected by {relay.name}, as the SCD says"
     else:
-        yield f"name = {_quoted(relay.motor)}    # call it as the plant does"
+        remark = "" if relay.has_motor_name else "    # call it as the plant does"
+        yield f"name = {_quoted(relay.motor)}{remark}"
         yield f"relay = {_quoted(relay.name)}"
-    if not relay.description:
+    if relay.description and not relay.in_scd:
+        yield f"description = {_quoted(relay.description)}"
+    elif not relay.description:
         yield '# description = "what it drives"'
     yield '# schedule = "0 6 * * *"    # recorded when: minute, hour, day, month, day of the week, in UTC'
     yield ""
     yield "[motor.nameplate]"
-    yield from (f"# {key} =    # {words}" for key, words in BLANKS)
-    yield '# connection = "delta"    # "star" is the default'
+    yield from (f"# {key} =    # {words}" for key, words in BLANKS if key not in relay.plate)
+    for key, value in relay.plate.items():
+        yield f"{key} = {_quoted(value) if isinstance(value, str) else value}"
+    if "connection" not in relay.plate:
+        yield '# connection = "delta"    # "star" is the default'
     yield "# [motor.parameters] may stay away at first: the motor begins with what is typical of its rating."
     yield "# mcc commission or mcc parameters gives its own: docs/how-to/commissioning.md."
     yield "# [motor.transformers] has voltage_ratio and current_ratio, where recordings do not tell them:"
     yield "# docs/reference/motor-file.md."
+    yield "# [motor.winding]    # the stator's, from a winder's sheet: docs/how-to/stator-winding.md"
+    yield '# kind = "lap"    # or "concentric"'
+    yield "# slots = 36    # of the stator"
+    yield "# layers = 2    # coil sides in a slot, 1 or 2"
+    yield "# coil_pitch_slots = 8    # 8 for a span of 1 to 9; leave it out where it is not known"
 
 
 def _scl_files(draft: Draft) -> list[Path]:

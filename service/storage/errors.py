@@ -81,6 +81,63 @@ class LastAdministratorError(StorageError):
         )
 
 
+class RolesNotSeparateError(StorageError):
+    """A user is to have both roles that watch each other."""
+
+    def __init__(self, name: str) -> None:
+        super().__init__(
+            f"user {name!r} cannot have both SECADM and SECAUD: who manages users does not read the audit "
+            "trail that tells of it; give the roles to two people; nothing was changed"
+        )
+
+
+class AuditorAccountError(StorageError):
+    """Somebody who manages users wants what would let them read the audit trail as somebody else."""
+
+    def __init__(self, name: str, what: str) -> None:
+        super().__init__(
+            f"{what} of user {name!r} is for the owner of the service's files alone, because whoever manages "
+            "users must not get at the audit trail: have them run it with --config FILE on the service's "
+            "machine; nothing was changed"
+        )
+
+
+class NotOwnPasswordError(StorageError):
+    """A password is to be set in a way that is not for this user."""
+
+    def __init__(self, name: str, instead: str) -> None:
+        super().__init__(f"the password of user {name!r} is not set so: {instead}; nothing was changed")
+
+
+class PasswordOfAnotherError(StorageError):
+    """Somebody else knows the password of a user, who is to change it first."""
+
+    def __init__(self, name: str, by: str) -> None:
+        super().__init__(
+            f"{by} gave user {name!r} their password: change it first (mcc password, or the page Account)"
+        )
+
+
+class TokenOfAnotherError(StorageError):
+    """A token is to be made for somebody else."""
+
+    def __init__(self, name: str) -> None:
+        super().__init__(
+            f"a token of user {name!r} is made by that user alone: log in as them (mcc login, then mcc token "
+            "add LABEL); for a user whom nobody can log in as, the owner of the service's files does (mcc "
+            "token add LABEL --user NAME --config FILE)"
+        )
+
+
+class WiderTokenError(StorageError):
+    """A token is to outlive the token that asks for it, or to allow more."""
+
+    def __init__(self, label: str, what: str) -> None:
+        super().__init__(
+            f"the token {label!r} cannot ask for a token that {what} than itself; nothing was changed"
+        )
+
+
 class TooManyTokensError(StorageError):
     """A user has as many tokens as one may have."""
 
@@ -103,7 +160,7 @@ class DoubtfulBaselineError(StorageError):
         super().__init__(
             f"{len(doubts)} of {number} recordings are in doubt as a baseline of motor {motor}: a fault that "
             "they have would be taken off all later diagnoses; choose healthy ones, or say why these stand "
-            "for health (reason) and who says so (by)"
+            "for health (reason)"
         )
 
 

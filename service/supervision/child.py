@@ -3,12 +3,13 @@
 import os
 import signal
 import sys
+from collections.abc import Collection
 from dataclasses import dataclass
 from threading import Event, Thread
 from typing import BinaryIO
 
 from service.configuration.settings import Settings
-from service.process.capabilities import Capability, give_up, keep_only
+from service.process.capabilities import Capability, keep_only
 from service.process.logs import configure_logging
 from service.process.termination import leave_to_parent
 
@@ -27,17 +28,14 @@ class ChildInput:
 
 
 def begin_child(
-    process: str, settings_pipe: BinaryIO = sys.stdin.buffer, *, hears_raw_frames: bool = False
+    process: str, settings_pipe: BinaryIO = sys.stdin.buffer, *, needs: Collection[Capability] = ()
 ) -> ChildInput:
     """Read what the parent hands over, and watch it from then on.
 
-    process: names this one in the log.  hears_raw_frames: whether it needs raw sockets. One that does keeps
-    the capability for them alone, all others give it up.
+    process: names this one in the log.  needs: capabilities that it keeps where it has them; it gives up all
+    others, before it has threads.
     """
-    if hears_raw_frames:
-        keep_only([Capability.NET_RAW])
-    else:
-        give_up([Capability.NET_RAW])
+    keep_only(needs)
     # They reach every process of a terminal or of a systemd unit; this one ends when the service says so.
     leave_to_parent(signal.SIGINT, signal.SIGTERM)
     settings = Settings.model_validate_json(settings_pipe.readline())

@@ -4,7 +4,7 @@ import os
 import signal
 import subprocess
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from threading import Event, Lock, Thread
@@ -12,6 +12,7 @@ from typing import IO
 
 import structlog
 
+from service.configuration.environment import environment_with
 from service.configuration.settings import Settings
 from service.process.termination import held_back
 from service.timing.backoff import PROCESS_BACKOFF, STABLE_AFTER_S, Backoff, RestartDelay
@@ -62,6 +63,7 @@ class SupervisedProcess:
         settings: Settings,
         *,
         handed: bytes = b"",
+        secrets: Collection[str] = (),
         policy: RestartPolicy = RESTART_POLICY,
         on_exit: Callable[[int | None], None] = _ignore,
         on_line: Callable[[bytes], None] | None = None,
@@ -72,6 +74,8 @@ class SupervisedProcess:
 
         handed: what each child gets besides its settings, of any size.
 
+        secrets: beginnings of the names of the variables that the child gets of the service's own.
+
         on_exit: called after each end of the process with its exit code; None where it did not start.
 
         on_line: called with each line of the child's standard output; None where nothing is heard of that.
@@ -80,6 +84,7 @@ class SupervisedProcess:
         self._command = command
         self._settings = settings
         self._handed = handed
+        self._secrets = secrets
         self._policy = policy
         self._on_exit = on_exit
         self._on_line = on_line
@@ -159,6 +164,7 @@ class SupervisedProcess:
                         stdout=subprocess.DEVNULL if self._on_line is None else subprocess.PIPE,
                         pipesize=PIPE_BYTES,
                         pass_fds=inherited,
+                        env=environment_with(self._secrets),
                     )
                 # This is sent before anybody may close that pipe. It fits into it, so this never waits.
                 _send_settings(child, self._settings, inherited)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.machines.parameters import Motor
+from core.machines.table_layout import layout_of
 from core.recordings import Channel, Recording, read
 from core.signals.terminals import LINES, PHASES, Terminals, terminals
 from service.condition.healthy_records import MOST_VALUES
@@ -70,12 +71,14 @@ class Opened:
             line_voltages=named.line_voltages,
             voltage_ratio=ratios.voltage_ratio,
             current_ratio=ratios.current_ratio,
+            inside_delta=ratios.inside_delta,
         )
 
 
 def opened(path: Path, motor: Motor | None) -> Opened:
     """Read a recording to be looked at. Raises RecordingError (RecordingTooLongError), OSError."""
-    recording = read(path, most_values=MOST_VALUES)
+    lenient = motor is not None and motor.reads_leniently
+    recording = read(path, lenient=lenient, most_values=MOST_VALUES, layout=layout_of(motor))
     return Opened(recording, motor, shown_channels(recording.channels, motor))
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from core.recordings import Quantity, RecordingError
 from core.signals.clarke import CLARKE, clarke
 from core.signals.errors import SignalError
-from core.signals.phasors import fundamental_frequency, harmonic_phasors
+from core.signals.phasors import USUAL_SEARCH_HZ, fundamental_frequency, harmonic_phasors
 from core.signals.sequence import PhaseSequence, SequencePhasors, sequence_phasors
 from core.signals.terminals import PHASES, Terminals
 from service.waveforms.opened import Opened
@@ -96,8 +96,9 @@ def frequency_near(shown: Opened, measured: Terminals, at_s: float) -> tuple[flo
     rate = measured.sample_rate_hz
     axes = clarke(measured.current_abc) if measured.voltage_ab is None else measured.voltage_ab
     first, last = _around(at_s, FREQUENCY_WINDOW_S, rate, axes.shape[1])
+    search = shown.motor.nameplate.frequency_range_Hz if shown.motor else USUAL_SEARCH_HZ
     try:
-        return fundamental_frequency(axes[:, first:last], rate), False
+        return fundamental_frequency(axes[:, first:last], rate, search_hz=search), False
     except SignalError:
         rated = shown.motor.nameplate.rated_frequency_Hz if shown.motor else None
         known = shown.recording.nominal_frequency_hz or rated

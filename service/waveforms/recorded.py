@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 from core.diagnosis.verdict import FittedParameters, is_relative
 from core.machines.parameters import Motor
+from core.machines.table_layout import layout_of
 from core.recordings.envelope import Envelope
 from core.recordings.reading import read_envelope
 from core.units import NANOSECONDS_PER_SECOND
@@ -42,8 +43,11 @@ class Recorded:
 
     def envelope(self, entry: RecordingEntry, intervals: int) -> Envelope:
         """Read the envelope of a recording of any length. Raises as `open`."""
+        motor = self.motors.get(entry.motor)
+        lenient = motor is not None and motor.reads_leniently
         with self.store.opened(digest_of(entry)) as file:
-            return read_envelope(file, lambda _, samples: min(intervals, samples))
+            layout = layout_of(self.motor_of(entry))
+            return read_envelope(file, lambda _, samples: min(intervals, samples), layout, lenient=lenient)
 
     def motor_of(self, entry: RecordingEntry) -> Motor | None:
         """Return the motor as it was when it was recorded; None where the plant's files have it no more."""

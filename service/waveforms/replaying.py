@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from core.diagnosis.verdict import FittedParameters
 from core.machines.parameters import Motor
+from core.machines.table_layout import layout_of
 from core.recordings import RecordingError, read
 from service.condition.healthy_records import MOST_VALUES, learnt
 from service.recording_store.errors import RecordingStoreError
@@ -50,7 +51,10 @@ def replay_recording(task: ReplayTask) -> Replayed | NotReplayed:
 
     try:
         with task.recording.opened() as entry:
-            recording = read(entry, most_values=MOST_VALUES)
+            motor = task.motor
+            recording = read(
+                entry, lenient=motor.reads_leniently, most_values=MOST_VALUES, layout=layout_of(motor)
+            )
         drawn = replay(
             recording,
             task.motor,

@@ -43,7 +43,8 @@ class CurrentSpectrum:
     """The spectrum of the three line currents.
 
     frequency_hz, level_dB: shape (3, lines), beside the strongest line; of several lines that share a place
-    the largest is kept.  resolution_hz: least distance of lines that are told apart.  slip: None where the
+    the largest is kept.  resolution_hz: least distance of lines that are told apart.  lines: those that the
+    supply's own line does not cover, which leaks so far to both sides.  slip: None where the
     speed is not known.  seconds_for_sidebands: how long a recording has to be for the sidebands of broken
     bars to be told from the supply's line; None without a slip.
     """
@@ -92,8 +93,9 @@ def spectrum_of(
         highest,
         slip=slip,
         pole_pairs=None if shown.motor is None else shown.motor.nameplate.pole_pairs,
-        rotor_slots=None if shown.motor is None else shown.motor.nameplate.rotor_slots,
+        rotor_bars=None if shown.motor is None else shown.motor.nameplate.rotor_bars,
     )
+    lines = tuple(one for one in lines if _is_resolved(one, supply_hz, spectrum.resolution_hz))
     found = [_found(one, spectrum.frequency_hz, spectrum.amplitude, spectrum.resolution_hz) for one in lines]
     return CurrentSpectrum(
         first_s=before / rate,
@@ -114,6 +116,15 @@ def _slip(shown: Opened, supply_hz: float, speed_rpm: float | None) -> float | N
     if speed_rpm is None or shown.motor is None:
         return None
     return 1.0 - speed_rpm / SECONDS_PER_MINUTE * shown.motor.nameplate.pole_pairs / supply_hz
+
+
+def _is_resolved(line: SpectralLine, supply_hz: float, resolution_hz: float) -> bool:
+    """Tell whether a line is the supply's, or so far from it that something else than its leakage is seen.
+
+    That is its width on one side, and half of that again on both sides of the place that is looked at.
+    """
+    distance_hz = abs(line.frequency_hz - supply_hz)
+    return distance_hz == 0.0 or distance_hz >= 2.0 * resolution_hz
 
 
 def _found(

@@ -13,7 +13,7 @@ from service.web.load import routes as load
 from service.web.motor import relay_reports
 from service.web.motor import routes as motor
 from service.web.notifications import routes as notifications
-from service.web.people import account
+from service.web.people import account, second_factor
 from service.web.people import routes as people
 from service.web.plant import routes as plant
 from service.web.recording import routes as recording
@@ -36,6 +36,7 @@ ROOMS = (
     recording,
     people,
     account,
+    second_factor,
     audit,
     plant,
     notifications,
@@ -59,7 +60,7 @@ def create_site(context: ApiContext) -> FastAPI:
     fleet.install_fleet(app, context)
     app.add_middleware(HtmlProblems)
     app.add_middleware(StaticFiles, tree=static_tree())
-    app.add_middleware(SecurityHeaders)
+    app.add_middleware(SecurityHeaders, proxy=context.settings.access.proxy)
     return app
 
 

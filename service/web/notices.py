@@ -18,9 +18,11 @@ NOTICES: Final[Mapping[str, str]] = {
     "user-changed": "The changes are kept.",
     "user-unlocked": "Failed logins are forgotten.",
     "user-deleted": "The user is deleted.",
-    "password-set": "The password is set; sessions have ended.",
-    "sessions-ended": "All sessions have ended.",
+    "password-set": "The password is set. The user must change it. Sessions and tokens have ended.",
+    "sessions-ended": "All sessions and tokens have ended.",
+    "second-factor-removed": "The second factor is removed.",
     "token-revoked": "The token has ended.",
+    "tokens-revoked": "All tokens have ended.",
     "test-queued": "A test is on its way; below is what becomes of it (load the page again).",
     "tried-again": "The message is tried again.",
     "shelved": "The alarm is shelved.",
@@ -32,6 +34,7 @@ NOTICES: Final[Mapping[str, str]] = {
     "reference-restarted": "The motor counts as healthy as it is. Its reference is learnt anew.",
     "note-kept": "The note is kept. Where the condition rests on it, that follows within seconds.",
     "note-withdrawn": "The note counts no more.",
+    "undone": "Undone. The condition follows within seconds.",
 }
 
 

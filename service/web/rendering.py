@@ -3,9 +3,10 @@
 import gzip
 from functools import cache
 from http import HTTPStatus
+from pathlib import Path
 from typing import Final
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
+from jinja2 import Environment, PackageLoader, StrictUndefined, Undefined
 from starlette.datastructures import Headers
 from starlette.responses import HTMLResponse
 
@@ -37,11 +38,12 @@ HTMX_CONFIG: Final = {
 
 @cache
 def environment() -> Environment:
-    """Return the templates: every value in them is escaped, and an unknown name is an error."""
+    """Return the templates: values are escaped; an unknown name is an error, and so is what is no text."""
     made = Environment(
         loader=PackageLoader("service.web"),
         autoescape=True,
         undefined=StrictUndefined,
+        finalize=printed,
         trim_blocks=True,
         lstrip_blocks=True,
     )
@@ -66,6 +68,13 @@ def environment() -> Environment:
         "marked": with_marks,
     }
     return made
+
+
+def printed(value: object) -> object:
+    """Return a value that a template prints. Raises TypeError where people could not read it."""
+    if isinstance(value, str | int | float | Path | Undefined) and not isinstance(value, bool):
+        return value
+    raise TypeError(f"a template prints text, numbers and paths, found {type(value).__name__}")
 
 
 def rendered(template: str, **data: object) -> str:

@@ -5,7 +5,7 @@ from math import pi, sqrt
 
 import numpy as np
 
-from core.classification.causes import Cause, Causes
+from core.diagnosis.causes import Cause, Causes
 from core.machines.parameters import Motor, Nameplate
 from core.recordings import Recording
 from ied_sim.motor.eccentricity import Eccentricity

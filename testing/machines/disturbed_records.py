@@ -41,11 +41,11 @@ class MotorWithAdditionalWinding(MotorPlant):
     """The thesis's stator (6.10-6.15): three whole phases and beside them a winding of mu times the turns."""
 
     level: float = 0.0
-    winding: int = 0
+    phase: int = 0
 
     def circuit(self, time_s: float, closed_s: float = -inf) -> WindingCircuit:
         del time_s, closed_s
-        return additional_winding_circuit(self.motor, self.level, self.winding)
+        return additional_winding_circuit(self.motor, self.level, self.phase)
 
 
 def additional_winding_circuit(motor: Motor, level: float, winding: int) -> WindingCircuit:
@@ -54,7 +54,7 @@ def additional_winding_circuit(motor: Motor, level: float, winding: int) -> Wind
     It has mu of the turns, mu of the resistance and mu^2 of the leakage of a phase, on the phase's axis.
     """
     machine = motor.parameters
-    healthy = winding_circuit(machine, motor.nameplate.connection)
+    healthy = winding_circuit(motor)
     old = np.array([0, 1, 3, 4])
     leakage, constant, cosine, sine, resistance = (np.zeros((5, 5)) for _ in range(5))
     for grown, matrix in (
@@ -78,7 +78,19 @@ def additional_winding_circuit(motor: Motor, level: float, winding: int) -> Wind
     resistance[2, 2] = level * machine.stator_resistance_ohm
     drive = np.zeros((5, 3))
     drive[:2] = healthy.drive[:2]
-    return WindingCircuit(leakage, constant, cosine, sine, resistance, drive)
+    rotor_current = np.zeros((2, len(leakage)))
+    rotor_current[:, old] = healthy.rotor_current
+    return WindingCircuit(
+        leakage,
+        np.zeros_like(leakage),
+        constant,
+        cosine,
+        sine,
+        resistance,
+        drive,
+        np.zeros((2, len(leakage))),
+        rotor_current,
+    )
 
 
 def plant_of(motor: Motor, model: FaultModel, condition: Condition, supply: Supply, load: Load) -> MotorPlant:
@@ -88,7 +100,7 @@ def plant_of(motor: Motor, model: FaultModel, condition: Condition, supply: Supp
         return MotorPlant(motor, supply, load, sensors)
     if model is FaultModel.ADDITIONAL:
         return MotorWithAdditionalWinding(
-            motor, supply, load, sensors, level=condition.level, winding=condition.winding
+            motor, supply, load, sensors, level=condition.level, phase=condition.winding
         )
     path = condition.path_resistance_ohm(motor)
     course = FaultCourse(condition.winding, ((0.0, condition.level),), path)

@@ -1,6 +1,7 @@
 """Motors of different rating, the first the thesis's (Table 3.2)."""
 
 from core.machines.parameters import Connection, MachineParameters, Motor, Nameplate
+from core.machines.stator_winding import StatorWinding, WindingKind
 
 REFERENCE = Motor(
     "reference",
@@ -24,5 +25,7 @@ VERY_LARGE = Motor(
     Nameplate(250_000.0, 400.0, 50.0, pole_pairs=2, connection=Connection.DELTA),
     MachineParameters(0.016, 0.0145, 0.00051, 0.00056, 0.0119, 4.2),
 )
+ONE_LAYER = StatorWinding(WindingKind.CONCENTRIC, slots=36, layers=1)
+"""A winding whose coils lie on their phase's axis, as the turns of the split winding do."""
 ALL = (REFERENCE, MEDIUM, LARGE)
 """Without the very large one, which few tests need."""

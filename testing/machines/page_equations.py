@@ -5,6 +5,8 @@ column; nothing of the models' own matrices is used.
 """
 
 from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -18,8 +20,29 @@ K = np.sqrt(2.0 / 3.0)
 J = np.array([[0.0, -1.0], [1.0, 0.0]])
 
 
-def axis(winding: int) -> Array:
-    angle = 2.0 * np.pi / 3.0 * winding
+@dataclass(frozen=True)
+class Coil:
+    """Where shorted turns lie, and what bridges them.
+
+    own_leakage: share kappa of their leakage that is not linked with the phase.  axis_rad: delta from the
+    phase's axis.  linkage: 1 / k_d.  path_ratio: r_f / (mu R_s).
+    """
+
+    own_leakage: float = 1.0
+    axis_rad: float = 0.0
+    linkage: float = 1.0
+    path_ratio: float = 0.0
+
+    def leakage_of(self, mu: float) -> float:
+        """lambda = kappa + (1 - kappa) mu."""
+        return self.own_leakage + (1.0 - self.own_leakage) * mu
+
+
+ON_PHASE_AXIS = Coil()
+
+
+def axis(winding: int, beside_rad: float = 0.0) -> Array:
+    angle = 2.0 * np.pi / 3.0 * winding + beside_rad
     return np.array([np.cos(angle), np.sin(angle)])
 
 
@@ -49,24 +72,33 @@ def split_winding_current(motor: Motor, mu: float, winding: int, z: Array) -> fl
     return float(K * axis(winding) @ z[0:2] + around)
 
 
-def split_winding_fluxes(motor: Motor, mu: float, winding: int, z: Array) -> Array:
-    """psi_s, psi_r, psi_x2 of Tallam's model from i_s, i_r, i_f."""
-    p, n = motor.parameters, axis(winding)
+def split_winding_fluxes(
+    motor: Motor, mu: float, winding: int, z: Array, coil: Coil = ON_PHASE_AXIS
+) -> Array:
+    """psi_s, psi_r, psi_x2 of Tallam's model from i_s, i_r, i_f; the field sees the coil's axis."""
+    p, n, n_c = motor.parameters, axis(winding), coil.linkage * axis(winding, coil.axis_rad)
     i_s, i_r, i_f = z[0:2], z[2:4], z[4]
-    sound = i_s - K * n * mu * i_f
-    psi_m = p.magnetising_inductance_H * (sound + i_r)
-    psi_x2 = mu * (p.stator_leakage_H * (split_winding_current(motor, mu, winding, z) - i_f) + K * n @ psi_m)
-    return np.concatenate([p.stator_leakage_H * sound + psi_m, p.rotor_leakage_H * i_r + psi_m, [psi_x2]])
+    i_x = split_winding_current(motor, mu, winding, z)
+    psi_m = p.magnetising_inductance_H * (i_s - K * n_c * mu * i_f + i_r)
+    psi_s = p.stator_leakage_H * (i_s - K * n * mu * i_f) + psi_m
+    psi_x2 = mu * (p.stator_leakage_H * (i_x - coil.leakage_of(mu) * i_f) + K * n_c @ psi_m)
+    return np.concatenate([psi_s, p.rotor_leakage_H * i_r + psi_m, [psi_x2]])
 
 
-def split_winding_drops(motor: Motor, mu: float, winding: int, v: Array, z: Array) -> Array:
+def split_winding_drops(
+    motor: Motor, mu: float, winding: int, v: Array, z: Array, coil: Coil = ON_PHASE_AXIS
+) -> Array:
+    """Voltages that change the fluxes; of the loop r_f i_f - mu R_s (i_x - i_f)."""
     p, n = motor.parameters, axis(winding)
     i_s, i_r, i_f = z[0:2], z[2:4], z[4]
     return np.concatenate(
         [
             v - p.stator_resistance_ohm * (i_s - K * n * mu * i_f),
             -p.rotor_resistance_ohm * i_r,
-            [-mu * p.stator_resistance_ohm * (split_winding_current(motor, mu, winding, z) - i_f)],
+            [
+                mu * p.stator_resistance_ohm * coil.path_ratio * i_f
+                - mu * p.stator_resistance_ohm * (split_winding_current(motor, mu, winding, z) - i_f)
+            ],
         ]
     )
 
@@ -136,12 +168,16 @@ def integrate(
     *,
     load_exponent: int = 0,
     broken_share: float = 0.0,
+    coil: Coil | None = None,
 ) -> tuple[Array, Array]:
     """Stator currents (2, times) and electrical speed (times,) from currents `start` (5,) at times[0].
 
     load_exponent: of the speed in the load torque; broken_share: n_bb / N_b, their axis on alpha at times[0].
+    coil: of the split winding.
     """
     fluxes, drops = PAGES[model]
+    if coil is not None:
+        fluxes, drops = partial(split_winding_fluxes, coil=coil), partial(split_winding_drops, coil=coil)
     columns = np.array([fluxes(motor, mu, winding, unit) for unit in np.eye(5)]).T
     inverse = np.linalg.inv(columns)
     off = np.zeros(2)

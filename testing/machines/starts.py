@@ -12,6 +12,7 @@ from core.machines.motor_file.reader import Plate
 from core.machines.parameters import ChannelNames, Limits, MachineParameters, Motor
 from core.machines.sensors import SensorClass
 from core.recordings import Channel, Quantity, Recording
+from ied_sim.motor.deep_bars import UNSATURATED, DeepBars, LeakageSaturation
 from ied_sim.motor.load import Load
 from ied_sim.motor.plant import MotorPlant
 from ied_sim.motor.sensors import Sensors
@@ -32,6 +33,7 @@ class StartRecord:
     switched_at_s: position of the start in the supply's cycle.
     voltage: over the rated one.  unbalance: V2/V1.
     broken_bars: broken share of the cage's bars.  resistances: of stator and rotor over the parameters'.
+    deep_bars, leakage_saturation: what a start shows of the motor beside its parameters.
     """
 
     load_level: float = 0.5
@@ -50,6 +52,8 @@ class StartRecord:
     unbalance: float = 0.0
     broken_bars: float = 0.0
     resistances: tuple[float, float] = (1.0, 1.0)
+    deep_bars: DeepBars | None = None
+    leakage_saturation: LeakageSaturation = UNSATURATED
 
     def of(self, motor: Motor) -> Recording:
         """The recording: IA IB IC and three phase or two line voltages."""
@@ -67,8 +71,9 @@ class StartRecord:
             rotor_resistance_ohm=rotor * motor.parameters.rotor_resistance_ohm,
         )
         plant = MotorPlant(
-            turning, supply, Load(self.load_level), Sensors(1.0, 1.0), broken_bars=self.broken_bars
-        )
+            turning, supply, Load(self.load_level), Sensors(1.0, 1.0), broken_bars=self.broken_bars,
+            deep_bars=self.deep_bars, leakage_saturation=self.leakage_saturation,
+        )  # fmt: skip
         true = plant.start_up(self.switched_at_s, self.duration_s, TRUE_RATE_HZ)
         behind = np.arange(true.currents_A.shape[1]) / TRUE_RATE_HZ
         t = np.arange(round((self.duration_s + self.before_s) * self.sample_rate_hz)) / self.sample_rate_hz

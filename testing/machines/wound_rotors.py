@@ -14,19 +14,19 @@ from ied_sim.motor.supply import Supply
 from testing.machines.disturbed_records import record_of
 
 SAMPLE_RATE_HZ = 5_000.0
-ROTOR = WoundRotor(open_circuit_voltage_V=240.0, rated_current_A=98.0, rated_speed_rpm=1464.0)
+ROTOR = WoundRotor(open_circuit_voltage_V=240.0, rated_current_A=98.0)
 HOIST = Motor(
     "hoist",
-    Nameplate(37_000.0, 400.0, 50.0, pole_pairs=2),
+    Nameplate(37_000.0, 400.0, 50.0, pole_pairs=2, rated_speed_rpm=1464.0),
     MachineParameters(0.085, 0.0880, 0.00075, 0.00085, 0.0175, 0.9),
     wound_rotor=ROTOR,
 )
 """37 kW with its rings shorted while it runs."""
 MILL = Motor(
     "mill",
-    Nameplate(500_000.0, 6_000.0, 50.0, pole_pairs=3),
+    Nameplate(500_000.0, 6_000.0, 50.0, pole_pairs=3, rated_speed_rpm=989.0),
     MachineParameters(0.65, 0.70, 0.0206, 0.0219, 0.535, 100.0),
-    wound_rotor=WoundRotor(open_circuit_voltage_V=1_100.0, rated_current_A=281.0, rated_speed_rpm=989.0),
+    wound_rotor=WoundRotor(open_circuit_voltage_V=1_100.0, rated_current_A=281.0),
 )
 """500 kW at medium voltage."""
 HOIST_WITH_UNKNOWN_RESISTANCE = replace(

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from cryptography import x509
 from cryptography.hazmat.primitives import hashes, serialization
-from cryptography.hazmat.primitives.asymmetric import ec
+from cryptography.hazmat.primitives.asymmetric import ec, rsa
 from cryptography.x509.oid import NameOID
 
 VALID = timedelta(days=30)
@@ -18,7 +18,7 @@ class Identity:
     """A certificate with its private key, in memory and as PEM files; the key's is its owner's alone."""
 
     certificate: x509.Certificate
-    private_key: ec.EllipticCurvePrivateKey
+    private_key: ec.EllipticCurvePrivateKey | rsa.RSAPrivateKey
     certificate_file: Path
     key_file: Path
 
@@ -26,12 +26,15 @@ class Identity:
 def identity(
     folder: Path, name: str, *, issuer: Identity | None = None, authority: bool = False,
     since: timedelta = -timedelta(hours=1), until: timedelta = VALID, address: str = "127.0.0.1",
+    with_rsa: bool = False,
 ) -> Identity:  # fmt: skip
     """A new one called `name`, signed by its issuer or by itself; `since` and `until` from now.
 
-    address: at which a server with it is.
+    address: at which a server with it is.  with_rsa: its key is of RSA and not of an elliptic curve.
     """
-    private_key = ec.generate_private_key(ec.SECP256R1())
+    private_key: ec.EllipticCurvePrivateKey | rsa.RSAPrivateKey = ec.generate_private_key(ec.SECP256R1())
+    if with_rsa:
+        private_key = rsa.generate_private_key(65537, 2048)
     subject = x509.Name([x509.NameAttribute(NameOID.COMMON_NAME, name)])
     now = datetime.now(UTC)
     certificate = (

@@ -34,14 +34,13 @@ class Pki:
         """One more of the authority, valid from and to, from now."""
         return identity(self.folder, name, issuer=self.authority, since=since, until=until)
 
-    def of_relay(self, *pinned: Identity) -> TlsConfiguration:
+    def of_relay(self, *pinned: Identity, version: TlsVersion = TlsVersion.TLS_1_2) -> TlsConfiguration:
         """The relay's side; it knows the client, and who else is named."""
-        return self._configuration(self.relay, self.client, *pinned)
+        return replace(self._configuration(self.relay, self.client, *pinned), version=version)
 
-    def of_client(self, *, only: TlsVersion | None = None) -> TlsConfiguration:
-        """The client's side, of one version of TLS only where one is named."""
-        made = self._configuration(self.client, self.relay)
-        return made if only is None else replace(made, minimum_version=only, maximum_version=only)
+    def of_client(self, *, version: TlsVersion = TlsVersion.TLS_1_2) -> TlsConfiguration:
+        """The client's side."""
+        return replace(self._configuration(self.client, self.relay), version=version)
 
     def of(self, owner: Identity) -> TlsConfiguration:
         """The client's side with another certificate."""

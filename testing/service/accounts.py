@@ -1,4 +1,4 @@
-"""An account for tests that are not about access: it may do everything."""
+"""An account for tests that are not about access: it may do everything but read the audit trail."""
 
 import atexit
 import os
@@ -11,37 +11,54 @@ from functools import cache
 from pathlib import Path
 
 from service.access.bearer_secrets import digest_of, new_token
-from service.client.credentials import remember
+from service.client.credentials import bearer, remember
 from service.configuration.settings import sqlite_url
 from service.storage import Repository, connect, migrate
 from service.storage.models import ApiTokenRow, UserRow
-from service.storage.records import Actor, Role
+from service.storage.records import COMMAND_LINE, Actor, Role
 
 TESTER = "tester"
-TESTS = Actor("tests", "command line")
+AUDITOR = "auditor"
+TESTS = Actor("tests", COMMAND_LINE)
+EVERYTHING = tuple(role for role in Role if role is not Role.SECAUD)
+"""The most that one user may be: nobody has SECADM and SECAUD."""
 
 
 def token_of(repository: Repository, *roles: Role, name: str = TESTER) -> str:
-    """A token of a user with these roles, or with all; the user is made where there is none.
+    """A token of a user with these roles, or with EVERYTHING; the user is made where there is none.
 
     The audit trail tells of neither: it is for what the tests do.
     """
     secret, now_ns = new_token(), time.time_ns()
     with repository._write() as session:  # noqa: SLF001 - so that no entry is made
         if session.get(UserRow, name) is None:
-            words = " ".join(roles or tuple(Role))
+            words = " ".join(roles or EVERYTHING)
             session.add(UserRow(name=name, roles=words, disabled=False, created_ns=now_ns))
             session.flush()
         session.add(
             ApiTokenRow(
-                id=str(uuid.uuid4()), user=name, label="tests", digest=digest_of(secret), created_ns=now_ns
+                id=str(uuid.uuid4()),
+                user=name,
+                label="tests",
+                digest=digest_of(secret),
+                created_ns=now_ns,
             )
         )
     return secret
 
 
+def auditor(repository: Repository) -> Mapping[str, str]:
+    """The headers of somebody who reads the audit trail, and may do everything but manage users."""
+    return bearer(auditor_token(repository))
+
+
+def auditor_token(repository: Repository) -> str:
+    """A token of the same."""
+    return token_of(repository, *(role for role in Role if role is not Role.SECADM), name=AUDITOR)
+
+
 def log_in(repository: Repository, url: str) -> str:
-    """Have clients of this process, and commands that it runs, use a token of all roles at a service."""
+    """Have clients of this process, and commands that it runs, use a token of EVERYTHING at a service."""
     keep_apart()
     token = token_of(repository)
     remember(url, token=token)

@@ -1,8 +1,8 @@
 """Answers of records, for tests without a worker."""
 
-from core.classification.causes import Cause
 from core.classification.classification import Classification, classify
 from core.classification.evidence import Block, Evidence, only
+from core.diagnosis.causes import Cause
 
 
 def answer_of(**nats: float) -> Classification:

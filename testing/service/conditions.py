@@ -4,9 +4,10 @@ from dataclasses import fields, replace
 
 from core.condition.assessment import Level, Reference
 from core.condition.events import Event, EventKind
-from core.condition.forecast.forecast import Forecast
+from core.condition.forecast.outcome import Forecast
 from core.condition.kinds import Kind, State
 from core.condition.verdict.condition import Condition
+from core.tracking.finding import TrackedParameters
 from core.units import NANOSECONDS_PER_DAY
 from service.storage import Repository
 from service.storage.records import (
@@ -26,6 +27,8 @@ HEALTHY = Condition(
     kind=Kind.NONE,
     candidates=(),
     phase=None,
+    phase_probabilities=None,
+    axis_deg=None,
     mu_f=0.0004,
     mu_f_ci95=(0.0, 0.012),
     change=0.0,
@@ -39,7 +42,7 @@ HEALTHY = Condition(
         complete=True,
         since_ns=NOW_NS - 64 * NANOSECONDS_PER_DAY,
         detectable=0.0045,
-        standing=Level(0.004, 0.005, 1, 0.5),
+        standing=Level(0.004, 0.005, 1, phases=(0.01, 0.98, 0.01)),
         standing_score=0.8,
         from_bus=False,
     ),
@@ -65,6 +68,15 @@ FAULT = replace(
     advice="Check the winding of phase b. Stop the motor at the next opportunity.",
     reasons=("shorted turns in phase b: 1.20 %", "the interval lies above the motor's limit of 0.50 %"),
 )
+
+OPEN_PHASE = replace(
+    FAULT,
+    phase=None,
+    phase_probabilities=(0.72, 0.0, 0.28),
+    advice="Check the winding. Stop the motor at the next opportunity.",
+    reasons=("shorted turns in phase a (72 %) or c (28 %): 1.20 %",),
+)
+"""A fault that lies in one of two phases."""
 
 DRIFTING = replace(
     HEALTHY,
@@ -107,21 +119,35 @@ def entry_of(condition: Condition) -> ConditionEntry:
     )
 
 
-def tell(repository: Repository, condition: Condition, *, now_ns: int = NOW_NS) -> None:
+def tell(
+    repository: Repository,
+    condition: Condition,
+    *,
+    now_ns: int = NOW_NS,
+    parameters: TrackedParameters | None = None,
+) -> None:
     """Have the database say this condition of its motor from each of the motor's records on.
 
     It is folded as if an event had made it.
     """
-    fold(repository, condition, told_event(repository, condition.motor, now_ns=now_ns), now_ns=now_ns)
+    event_id = told_event(repository, condition.motor, now_ns=now_ns)
+    fold(repository, condition, event_id, now_ns=now_ns, parameters=parameters)
 
 
 def told_event(repository: Repository, motor: str, *, now_ns: int = NOW_NS) -> str:
     """Have a motor's events hold one more; return its name. What follows from it is not folded yet."""
     event = Event(now_ns, EventKind.MAINTENANCE, "new bearing")
-    return repository.add_event(motor, event, by=SERVICE, told_by="ann", now_ns=now_ns).id
+    return repository.add_event(motor, event, by=SERVICE, on_behalf_of="ann", now_ns=now_ns).id
 
 
-def fold(repository: Repository, condition: Condition, event_id: str, *, now_ns: int = NOW_NS) -> None:
+def fold(
+    repository: Repository,
+    condition: Condition,
+    event_id: str,
+    *,
+    now_ns: int = NOW_NS,
+    parameters: TrackedParameters | None = None,
+) -> None:
     """Have the database say this condition of its motor, as if that event had made it: one transaction."""
     begun = repository.begin_fold(condition.motor, 1000)
     assert begun is not None
@@ -136,4 +162,6 @@ def fold(repository: Repository, condition: Condition, event_id: str, *, now_ns:
     )
     folded = Checkpoint(max([now_ns, *(point.time_ns for point in points)]), len(points), b"")
     result = FoldResult(points, [change], [folded], tuple(begun.earlier), entry)
+    if parameters is not None:
+        result = replace(result, parameters=parameters.as_dict())
     assert repository.finish_fold(begun, result, now_ns=now_ns)

@@ -5,14 +5,16 @@ from math import pi
 
 import numpy as np
 
-from core.condition.measuring.measurement import WARM
+from core.condition.measuring.impedance import WARM
 from core.condition.observation import Observation, VoltageChannels
+from core.machines.coil_fault import AirGap, SequencePair, air_gap, faulty_currents
 from core.signals.sequence import PhaseSequence
 from core.units import NANOSECONDS_PER_SECOND
 from testing.machines.motors import REFERENCE
 from testing.service.plants import NOW_NS
 
 HOUR_NS = 3600 * NANOSECONDS_PER_SECOND
+LEVEL = 0.02
 
 OBSERVATION = Observation(
     time_ns=NOW_NS,
@@ -41,8 +43,8 @@ def observation(hour: float, negative_voltage_V: complex = OBSERVATION.negative_
 def records_of_a_motor(number: int, *, fault_from: int | None = None, seed: int = 1) -> list[Observation]:
     """Hourly records of the demo plant's motor on a supply that wanders, at loads from little to rated.
 
-    From a record on it has about 2 % shorted turns. Its currents are those of its equivalent circuit, so that
-    its parameters stay what they are.
+    From a record on it has shorted turns of an equivalent level of 2 %. Its currents are those of its
+    equivalent circuit, so that its parameters stay what they are.
     """
     rng = np.random.default_rng(seed)
     Z2 = complex(15.0, 20.5)
@@ -51,8 +53,12 @@ def records_of_a_motor(number: int, *, fault_from: int | None = None, seed: int 
     for at in range(number):
         v2 = 0.008 * rng.random() * np.exp(2j * np.pi * rng.random())
         noise = 2e-4 * complex(*rng.normal(size=2))
-        I1 = 310.0 / _impedance(slip=rng.uniform(0.01, 0.05))
-        fault = 0.0 if fault_from is None or at < fault_from else 0.012 * np.exp(0.3j)
+        gap = _air_gap(slip=rng.uniform(0.01, 0.05))
+        I1, I2 = 310.0 / (gap.stator + gap.forward), complex(310.0 * (v2 + standing) / Z2)
+        if fault_from is not None and at >= fault_from:
+            seen = SequencePair(310.0 + 0j, 0j)
+            faulty = faulty_currents(gap, seen, gap.stator / LEVEL, 1.0 + 0j, 1.0 + 0j, 0.0, 0)
+            I1, I2 = faulty.positive, I2 + faulty.negative
         records.append(
             replace(
                 OBSERVATION,
@@ -60,17 +66,20 @@ def records_of_a_motor(number: int, *, fault_from: int | None = None, seed: int 
                 positive_voltage_V=310.0 + 0.0j,
                 negative_voltage_V=complex(310.0 * (v2 + noise)),
                 positive_current_A=I1,
-                negative_current_A=complex(310.0 * (v2 + standing + fault) / Z2),
+                negative_current_A=I2,
             )
         )
     return records
 
 
-def _impedance(slip: float) -> complex:
-    """Return the impedance of the demo plant's warm motor to the positive sequence [ohm]."""
+def _air_gap(slip: float) -> AirGap:
+    """Return the impedances of the demo plant's warm motor."""
     machine = REFERENCE.parameters
     w = 2.0 * pi * OBSERVATION.frequency_hz
-    stator = complex(WARM * machine.stator_resistance_ohm, w * machine.stator_leakage_H)
-    rotor = complex(WARM * machine.rotor_resistance_ohm / slip, w * machine.rotor_leakage_H)
-    magnetising = 1j * w * machine.magnetising_inductance_H
-    return stator + magnetising * rotor / (magnetising + rotor)
+    return air_gap(
+        complex(WARM * machine.stator_resistance_ohm, w * machine.stator_leakage_H),
+        w * machine.magnetising_inductance_H,
+        WARM * machine.rotor_resistance_ohm,
+        w * machine.rotor_leakage_H,
+        slip,
+    )

@@ -57,6 +57,7 @@ class PostgresServer:
         self._as_owner = ["setpriv", "--pdeathsig=QUIT"]
         if os.getuid() == 0:
             shutil.chown(directory, OWNER)
+            directory.chmod(0o711)  # processes of the service, which give up root's rights, find the socket
             self._as_owner += [f"--reuid={OWNER}", f"--regid={OWNER}", "--init-groups"]
         # The server ends with the thread that has started it, so that one has to live as long.
         self._starting = ThreadPoolExecutor(1, "postgresql")

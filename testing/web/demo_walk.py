@@ -138,7 +138,7 @@ def find_what_to_do(page: WatchedPage, walk: Walk) -> str:
 
 STANDING = "PUMP-B3"
 LISTS = ("/alarms", "/relays", "/recordings", "/plant", "/reports")
-FOR_PEOPLE = ("/notifications", "/people", "/audit", "/account")
+FOR_PEOPLE = ("/notifications", "/people", "/account")
 OF_ONE = {"/alarms": "/alarms/", "/relays": "/relays/", "/recordings": "/recordings/"}
 """Lists, and how addresses of what they list begin."""
 

@@ -10,8 +10,10 @@ from service.access.permissions import Permission
 from service.api.access.cookies import NAME
 from service.api.access.requirements import requirement_of
 from service.storage import Repository
+from service.storage.records import Role
 from service.web.addresses import path_segment
 from service.web.app import ROOMS
+from testing.service.accounts import EVERYTHING
 
 STREAMS = ("/live",)
 """Answers that do not end."""
@@ -40,6 +42,11 @@ def permission_for(method: str, path: str) -> Permission | None:
         if re.fullmatch(re.sub(r"\{\w+\}", "[^/]+", template), path.partition("?")[0]):
             return permission
     raise LookupError(f"no route for {method} {path}")
+
+
+def roles_for(path: str) -> tuple[Role, ...]:
+    """Return roles of one user that sees a page: the auditor's pages are for nobody who manages users."""
+    return (Role.SECAUD,) if permission_for("GET", path) is Permission.AUDIT else EVERYTHING
 
 
 def _motor(repository: Repository) -> str:

@@ -20,7 +20,7 @@ from service.storage import Repository, connect
 from service.storage.errors import UserExistsError
 from service.storage.records import Actor, Role
 from service.web.app import create_site
-from testing.service.accounts import TESTS
+from testing.service.accounts import EVERYTHING, TESTS
 from testing.service.listening import LONGEST_S, listening
 from testing.web.watched_page import WatchedPage
 
@@ -85,7 +85,7 @@ class Site:
         return page
 
     def log_in(self, *roles: Role, user: str | None = None) -> str:
-        """Return the secret of a new session of a user, or of one with these roles; by default with all."""
+        """Return the secret of a new session of a user, or of one with these roles, by default EVERYTHING."""
         return log_in(self.repository, *roles, user=user)
 
     def close_pages(self) -> list[str]:
@@ -98,10 +98,10 @@ class Site:
 
 
 def log_in(repository: Repository, *roles: Role, user: str | None = None) -> str:
-    """Return the secret of a new session of a user, or of one with these roles; by default with all."""
+    """Return the secret of a new session of a user, or of one with these roles, by default EVERYTHING."""
     now_ns = time.time_ns()
     if user is None:
-        roles = roles or tuple(Role)
+        roles = roles or EVERYTHING
         user = "-".join(sorted(role.lower() for role in set(roles)))
         with suppress(UserExistsError):
             repository.add_user(user, roles, password=None, by=TESTS, now_ns=now_ns)

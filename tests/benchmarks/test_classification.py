@@ -8,8 +8,8 @@ from benchmarks.classification.following import FollowedMotor
 from benchmarks.classification.lives import Life
 from benchmarks.classification.motor_answers import Course, Said
 from benchmarks.classification.outcomes import Outcome, outcome_of
-from core.classification.causes import NOTHING, Cause, Causes
 from core.classification.classification import Classification, Explanation, NotToldApart
+from core.diagnosis.causes import NOTHING, Cause, Causes
 
 TURNS, JOINT = frozenset({Cause.SHORTED_TURNS}), frozenset({Cause.CONNECTION})
 

@@ -119,7 +119,7 @@ def test_an_upload_tells_whether_it_is_new(client: Client) -> None:
 
 
 def test_a_change_is_made_and_told(client: Client) -> None:
-    kept = client.add_note(MOTOR, {"kind": "maintenance", "text": "looked at", "by": "me"})
+    kept = client.add_note(MOTOR, {"kind": "maintenance", "text": "looked at", "on_behalf_of": "me"})
     assert [note["id"] for note in client.list_notes(MOTOR)] == [kept["id"]]
     request = client.request_event_report(MOTOR, idempotency_key="once")
     assert client.request_event_report(MOTOR, idempotency_key="once")["id"] == request["id"]

@@ -1,8 +1,10 @@
 """Times and durations are as people write them."""
 
+import time
+
 import pytest
 
-from core.time_words import clock, day, duration, time_ahead
+from core.time_words import clock, day, duration, time_ahead, with_clock_times
 from core.units import NANOSECONDS_PER_HOUR
 
 
@@ -35,11 +37,32 @@ def test_a_time_ahead_is_rounded(days: float, expected: str) -> None:
     [
         (0, "UTC", "1970-01-01 00:00 UTC"),
         (-1, "UTC", "1969-12-31 23:00 UTC"),
-        (23, "Europe/Berlin", "1970-01-02 00:00 CET"),
-        (24 * 182, "Europe/Paris", "1970-07-02 01:00 CET"),
-        (24 * 182, "America/New_York", "1970-07-01 20:00 EDT"),
+        (23, "Europe/Berlin", "1970-01-02 00:00 +01:00"),
+        (24 * 182, "Europe/Paris", "1970-07-02 01:00 +01:00"),
+        (24 * 182, "America/New_York", "1970-07-01 20:00 -04:00"),
     ],
 )
 def test_a_time_as_the_clocks_of_a_zone_show_it(hours: int, zone: str, expected: str) -> None:
     assert clock(hours * NANOSECONDS_PER_HOUR, zone) == expected
     assert day(hours * NANOSECONDS_PER_HOUR, zone) == expected[:10]
+
+
+@pytest.mark.parametrize(
+    ("sentence", "expected"),
+    [
+        ("down since 2026-01-31T12:00:00Z: no answer", "down since 2026-01-31 13:00:00 +01:00: no answer"),
+        ("values from 2026-07-01T12:00Z on only", "values from 2026-07-01 14:00 +02:00 on only"),
+        ("2026-01-31T12:00:00.250Z", "2026-01-31T12:00:00.250Z"),
+        ("2026-99-31T12:00:00Z", "2026-99-31T12:00:00Z"),
+    ],
+)
+def test_times_of_a_sentence_as_the_clocks_of_a_zone_show_them(sentence: str, expected: str) -> None:
+    assert with_clock_times(sentence, "Europe/Berlin") == expected
+
+
+def test_without_a_zone_the_clock_is_that_of_this_machine(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TZ", "Asia/Kolkata")
+    time.tzset()
+    assert clock(0, None, seconds=True) == "1970-01-01 05:30:00 +05:30"
+    monkeypatch.undo()
+    time.tzset()

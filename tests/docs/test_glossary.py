@@ -8,6 +8,8 @@ import pytest
 from core.condition.events import EventKind
 from core.condition.kinds import Kind, State
 from core.diagnosis.verdict import Verdict
+from core.motor_condition.condition import Urgency
+from core.motor_condition.parts import Part
 from service.storage.states import (
     AlarmEvent,
     AlarmKind,
@@ -28,6 +30,8 @@ SHOWN = [
     Verdict,
     State,
     Kind,
+    Part,
+    Urgency,
     EventKind,
     AlarmKind,
     AlarmState,

@@ -14,5 +14,5 @@ def test_a_wrong_ratio_is_told(monkeypatch: pytest.MonkeyPatch, capsys: pytest.C
     runpy.run_path(str(EXAMPLE), run_name="__main__")
     told = capsys.readouterr().out
     assert told.startswith("drifting after 52 records")
-    assert "the ratio of a current or voltage transformer is another" in told
+    assert "a CT or VT ratio changed" in told
     assert "magnetising inductance: drifting" in told

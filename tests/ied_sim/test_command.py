@@ -122,7 +122,8 @@ def test_tells_the_truth(plant: Path) -> None:
     assert code == 0
     truth = json.loads(answer)
     assert tuple(truth) == RELAYS
-    assert truth["A2_SEL710"] == {**HEALTHY, "mu_f": 0.05, "theta_f": 1, "load_level": 0.65}
+    faulted = {"mu_f": 0.05, "theta_f": 1, "coil": 3, "coil_axis_deg": 20.0, "load_level": 0.65}
+    assert truth["A2_SEL710"] == {**HEALTHY, **faulted}
     assert truth["A1_SEL710"]["theta_f"] is None
 
 

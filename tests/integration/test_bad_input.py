@@ -193,7 +193,10 @@ def test_a_motor_without_recording_says_so(bench: Bench, capsys: pytest.CaptureF
     assert "CONVEYOR-B1: the link to B1_SEL710 is down: " in capsys.readouterr().err
 
 
-def test_motors_are_listed(bench: Bench, capsys: pytest.CaptureFixture[str]) -> None:
+def test_motors_are_listed(
+    bench: Bench, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "160")  # a narrow table leaves out the links that are up
     assert main(["motors", "--url", bench.service.url, "--json"]) == 0
     motors = json.loads(capsys.readouterr().out)["motors"]
     assert len(motors) == 6

@@ -9,6 +9,7 @@ import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from typing import cast
 
 import pytest
 
@@ -75,7 +76,7 @@ def crowding() -> float:
 
 
 def agrees_with_truth(truth: dict[str, float | None], diagnosis: dict[str, object]) -> None:
-    """Same verdict and phase, level within 0.3 percentage points, load within 5."""
+    """Same verdict and phase, level within a tenth of itself and in its interval, load within 5 points."""
     assert diagnosis["theta_f"] == truth["theta_f"]
     assert diagnosis["verdict"] == ("healthy" if truth["theta_f"] is None else "fault")
     mu_f, load_level = diagnosis["mu_f"], diagnosis["load_level"]
@@ -83,7 +84,9 @@ def agrees_with_truth(truth: dict[str, float | None], diagnosis: dict[str, objec
     assert isinstance(load_level, float)
     assert truth["mu_f"] is not None
     assert truth["load_level"] is not None
-    assert abs(mu_f - truth["mu_f"]) < 0.003
+    assert abs(mu_f - truth["mu_f"]) < 0.003 + 0.1 * truth["mu_f"]
+    low, high = cast("list[float]", diagnosis["mu_f_ci95"])
+    assert low <= truth["mu_f"] <= high
     assert abs(load_level - truth["load_level"]) < 0.05
 
 

@@ -10,6 +10,7 @@ import scl
 from scl import SclError
 from scl.document import MOST_FINDINGS
 from scl.model_text import model_text
+from scl.xml_file import MOST_ATTRIBUTES
 from tests.scl.documents import TEMPLATES, scl_text, write_scl
 
 PLANT = scl.DEMO_PLANT_SCD.read_bytes()
@@ -99,6 +100,17 @@ def test_deep_nesting_is_refused(tmp_path: Path) -> None:
     nodes = f'<LN lnClass="GGIO" lnType="GGIO"><DOI name="Ind1">{nested}</DOI></LN>'
     with pytest.raises(SclError, match="well-formed XML"):
         scl.read(write_scl(tmp_path / "deep.scd", scl_text(nodes=nodes)))
+
+
+@pytest.mark.parametrize("beginning", ["a", "x:a"], ids=["of SCL", "of another namespace"])
+def test_an_element_has_room_for_so_many_attributes(tmp_path: Path, beginning: str) -> None:
+    def header(number: int) -> str:
+        many = " ".join(f'{beginning}{n}=""' for n in range(number))
+        return f'<Header xmlns:x="urn:x" id="x" {many}/>'
+
+    scl.read(write_scl(tmp_path / "few.scd", scl_text(header=header(MOST_ATTRIBUTES - 1))))
+    with pytest.raises(SclError, match="expected at most 200 attributes of an element, found 201"):
+        scl.read(write_scl(tmp_path / "many.scd", scl_text(header=header(MOST_ATTRIBUTES))))
 
 
 def of_attributes(structs: int, members: int) -> str:

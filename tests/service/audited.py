@@ -4,16 +4,20 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cache
 from itertools import count
 from pathlib import Path
 from typing import Any
 
 import httpx
+import pyotp
 from fastapi import FastAPI
 
 from core.time_stamps import rfc3339
 from core.units import NANOSECONDS_PER_DAY
+from service.access.passwords import hashed
 from service.api import ApiContext
+from service.client.credentials import bearer
 from service.configuration.channels import Channel, CommandChannel
 from service.configuration.notifications import NotificationSettings
 from service.configuration.settings import Settings
@@ -23,7 +27,7 @@ from service.storage import Repository, connect
 from service.storage.records import SERVICE, Alarm
 from service.storage.states import AlarmKind
 from service.timing.backoff import Backoff
-from testing.service.accounts import TESTER
+from testing.service.accounts import EVERYTHING, TESTER, TESTS, token_of
 from testing.service.database import make_database
 from testing.service.diagnosed import add_diagnosed
 from testing.service.job_runner import register_runner
@@ -33,6 +37,9 @@ from tests.service.api.serving import serving
 API = "/api/v1"
 MOTOR = f"{API}/motors/PUMP-A1"
 ME = TESTER
+PERSON = "person-"
+"""How the names begin of those who do what ME cannot: log in, and end all of their tokens."""
+Body = dict[str, str]
 PASSWORD = "correct horse battery"  # noqa: S105 - of nobody
 
 
@@ -75,10 +82,27 @@ class Prepared:
     def token(self) -> str:
         return str(self.client.post(f"{API}/account/tokens", json={"label": "a test"}).json()["id"])
 
+    def person(self) -> str:
+        """The name of somebody new who has a password."""
+        name = f"{PERSON}{next(self.numbers)}"
+        self.repository.add_user(name, EVERYTHING, password=_hash(), by=TESTS, now_ns=time.time_ns())
+        return name
+
+    def bearer_of(self, name: str) -> Mapping[str, str]:
+        """The headers of a token of a user."""
+        return bearer(token_of(self.repository, name=name))
+
+    def somebody(self) -> Mapping[str, str]:
+        """The headers of a token of somebody new."""
+        return self.bearer_of(self.person())
+
+    def user_with_token(self) -> str:
+        user = self.user()
+        self.bearer_of(user.rpartition("/")[2])
+        return user
+
     def login(self) -> httpx.Response:
-        answer = self.client.put(f"{API}/users/{ME}/password", json={"password": PASSWORD})
-        assert answer.status_code == 204
-        wanted = {"name": ME, "password": PASSWORD}
+        wanted = {"name": self.person(), "password": PASSWORD}
         return httpx.post(f"{self.client.base_url}{API}/login", json=wanted, trust_env=False, timeout=30)
 
     def logout(self) -> httpx.Response:
@@ -86,12 +110,35 @@ class Prepared:
         return httpx.post(url, cookies=self.login().cookies, trust_env=False, timeout=30)
 
     def other_password(self) -> httpx.Response:
-        assert self.login().status_code == 200
         wanted = {"old": PASSWORD, "new": f"{PASSWORD} staple"}
-        return self.client.put(f"{API}/account/password", json=wanted)
+        return self.client.put(f"{API}/account/password", json=wanted, headers=self.somebody())
 
-    def note(self) -> str:
-        return str(self.client.post(f"{MOTOR}/notes", json={"text": "a note"}).json()["id"])
+    def in_session(
+        self,
+        path: str,
+        *,
+        with_app: bool = False,
+        code: bool = False,
+        json: Body | None = None,
+        data: Body | None = None,
+    ) -> httpx.Response:
+        """Send a document or a form in a session of somebody new.
+
+        with_app: with a second factor. code: with that of an app which is being set up as the body.
+        """
+        with httpx.Client(
+            base_url=self.client.base_url, cookies=self.login().cookies, trust_env=False, timeout=30
+        ) as session:
+            if with_app or code:
+                secret = session.post(f"{API}/account/totp", json={"password": PASSWORD}).json()["secret"]
+                shown = {"code": pyotp.TOTP(secret).now()}
+                if code:
+                    return session.post(path, json=json and shown, data=data and shown)
+                assert session.post(f"{API}/account/totp/confirmation", json=shown).is_success
+            return session.post(path, json=json, data=data)
+
+    def note(self, kind: str = "note") -> str:
+        return str(self.client.post(f"{MOTOR}/notes", json={"text": "a note", "kind": kind}).json()["id"])
 
     def alarm(self) -> str:
         subject = f"X{next(self.numbers)}.CFG"
@@ -123,6 +170,11 @@ class Prepared:
         return [("files", (f"U{next(self.numbers)}.CFF", b"an upload %d" % next(self.numbers)))]
 
 
+@cache
+def _hash() -> str:
+    return hashed(PASSWORD)
+
+
 SHELVED = {"until": rfc3339(time.time_ns() + NANOSECONDS_PER_DAY)}
 
 
@@ -139,7 +191,9 @@ def sent(prepared: Prepared, changes: Changes, change: str) -> httpx.Response:
     answer = send(prepared)
     assert not answer.is_error, answer.text
     assert answer.request.method == change.partition(" ")[0]
-    assert prepared.latest_entries() == [(action, ME, "127.0.0.1")]
+    ((found, actor, origin),) = prepared.latest_entries()
+    assert (found, origin) == (action, "127.0.0.1")
+    assert actor == ME or actor.startswith(PERSON)
     return answer
 
 

@@ -6,10 +6,9 @@ import pytest
 
 from service.access.permissions import permissions_of
 from service.storage.records import Role
-from testing.web.pages import address_of, is_page, page_routes, permission_for, routes
+from testing.web.pages import address_of, is_page, page_routes, permission_for, roles_for, routes
 from testing.web.site import PHONE, Site
 
-EVERYBODY = tuple(Role)
 ENLARGED = (640, 400)
 """A desktop's window at 200 %, in its own pixels."""
 
@@ -22,7 +21,7 @@ def path_of(site: Site, route: str) -> str | None:
     """An address of a page; None where the route answers with something else."""
     path = address_of(route, site.repository)
     assert path is not None, f"the seeded plant has nothing for {route}"
-    return path if is_page(site.url, path, site.log_in()) else None
+    return path if is_page(site.url, path, site.log_in(*roles_for(path))) else None
 
 
 @each_page
@@ -30,7 +29,7 @@ def test_a_page_is_accessible_in_every_light_and_size(looked_at: Site, route: st
     path = path_of(looked_at, route)
     if path is None:
         return
-    page = looked_at.open(*EVERYBODY)
+    page = looked_at.open(*roles_for(path))
     page.goto(path)
     assert page.page.title().endswith("StatorWatch")
     assert page.page.locator("h1").count() == 1
@@ -49,7 +48,7 @@ def test_tab_begins_at_the_first_link_and_the_current_page_is_in_sight(looked_at
     path = path_of(looked_at, route)
     if path is None:
         return
-    page = looked_at.open(*EVERYBODY, screen=PHONE)
+    page = looked_at.open(*roles_for(path), screen=PHONE)
     page.goto(path)
     current = page.page.locator("header nav [aria-current]")
     if current.count():
@@ -70,7 +69,10 @@ def test_a_page_can_be_read_without_scripts(looked_at: Site, route: str) -> None
     path = path_of(looked_at, route)
     if path is None:
         return
-    without, with_scripts = looked_at.open(*EVERYBODY, javascript=False), looked_at.open(*EVERYBODY)
+    without, with_scripts = (
+        looked_at.open(*roles_for(path), javascript=False),
+        looked_at.open(*roles_for(path)),
+    )
     for page in (without, with_scripts):
         page.goto(path)
     for part in ("h1", "h2", "th", "label"):
@@ -139,4 +141,4 @@ LINKS = """() => [...document.querySelectorAll("a[href]")].map((one) => new URL(
 
 
 def is_page_of(site: Site, path: str) -> bool:
-    return is_page(site.url, path, site.log_in())
+    return is_page(site.url, path, site.log_in(*roles_for(path)))

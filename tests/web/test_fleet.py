@@ -40,7 +40,7 @@ def test_the_worst_motor_comes_first_with_what_to_do(looked_at: Site) -> None:
     for words in ("fault", "phase", "since", "Stop the motor at the next opportunity", "ago"):
         expect(first).to_contain_text(words)
     expect(page.page.locator("tr", has_text=STALE)).to_contain_text("no recent record")
-    expect(page.page.locator("tr", has_text=STALE)).to_contain_text("no link to")
+    expect(page.page.locator("tr", has_text=STALE)).to_contain_text("link down: ")
     expect(page.page.locator("tr", has_text=STANDING)).to_contain_text("not running")
 
 

@@ -15,8 +15,9 @@ from service.configuration.settings import sqlite_url
 from service.plant import Plant
 from service.recording_store.folder import FolderStore
 from service.storage import Repository, connect
-from service.storage.records import Actor, RelayFindings, Role
+from service.storage.records import COMMAND_LINE, Actor, RelayFindings, Role
 from service.storage.states import AlarmKind, LinkState
+from testing.service.accounts import EVERYTHING
 from testing.service.conditions import DRIFTING, FAULT, tell
 from testing.service.database import make_database
 from testing.service.diagnosed import add_diagnosed
@@ -24,13 +25,14 @@ from testing.service.job_runner import register_runner
 from testing.service.links import set_link_state
 from testing.service.plants import fault, two_motor_plant
 from testing.service.real_recordings import add_recording, running_record
-from testing.web.pages import address_of, is_page, page_routes
+from testing.web.pages import address_of, is_page, page_routes, roles_for
 from testing.web.site import Site, running_site
 
 SCRIPT = "<script>window.harmed=1</script>"
 IMAGE = '"><img src=x onerror=window.harmed=1>'
 TEMPLATE = "{{7*7}}${7*7}</textarea></title>' onmouseover='window.harmed=1"
 HOSTILE = (SCRIPT, IMAGE, TEMPLATE)
+USERS = {"eve": EVERYTHING, "paul": (Role.SECAUD,)}
 HARMED = "() => window.harmed === 1 || document.querySelector('[onerror], [onmouseover]') !== null"
 
 
@@ -84,16 +86,19 @@ def hostile(tmp_path_factory: pytest.TempPathFactory, browser: Browser) -> Itera
             FAULT if name == SCRIPT else DRIFTING, motor=name, as_of_ns=now_ns, reasons=(name,), advice=name
         )
         tell(repository, condition, now_ns=now_ns)
-        repository.add_event(name, Event(now_ns, EventKind.NOTE, name), by=by, told_by=name, now_ns=now_ns)
+        repository.add_event(
+            name, Event(now_ns, EventKind.NOTE, name), by=by, on_behalf_of=name, now_ns=now_ns
+        )
         set_link_state(repository, name, LinkState.DOWN, name, now_ns=now_ns)
         alarm = repository.raise_alarm(name, AlarmKind.FILE_REFUSED, name, name, now_ns=now_ns)
         repository.acknowledge_alarm(alarm.id, by=by, comment=name, now_ns=now_ns)
         difference = {"kind": name, "expected": name, "found": name}
         ignored = {"name": name, "reason": name}
         repository.note_findings(RelayFindings(name, now_ns, ACQUISITION, [difference], [ignored], 1))
-    repository.add_user(
-        "eve", list(Role), full_name=SCRIPT, password=None, by=Actor(SCRIPT, IMAGE), now_ns=now_ns
-    )
+    for user, roles in USERS.items():
+        repository.add_user(
+            user, roles, full_name=SCRIPT, password=None, by=Actor(SCRIPT, COMMAND_LINE), now_ns=now_ns
+        )
     repository.add_token(
         "eve", IMAGE, "0" * 64, scope=None, expires_ns=None, by=Actor("eve", ""), now_ns=now_ns
     )
@@ -117,9 +122,10 @@ ACQUISITION = {
 def test_no_text_is_markup_on_any_page(hostile: Site, route: str) -> None:
     path = address_of(route, hostile.repository)
     assert path is not None
-    if not is_page(hostile.url, path, hostile.log_in(user="eve")):
+    (user,) = [name for name, roles in USERS.items() if roles == roles_for(path)]
+    if not is_page(hostile.url, path, hostile.log_in(user=user)):
         return
-    page = hostile.open(user="eve")
+    page = hostile.open(user=user)
     for query in (
         "",
         f"?text={'%3Cscript%3Ewindow.harmed%3D1%3C%2Fscript%3E'}&site=%22%3E%3Cimg%20src%3Dx%3E",

@@ -11,9 +11,8 @@ from playwright.sync_api import Browser
 from benchmarks.web.filling import Plan, fill
 from service.configuration.settings import sqlite_url
 from service.storage import Repository, connect
-from service.storage.records import Role
 from testing.service.database import make_database
-from testing.web.pages import address_of, is_page, page_routes
+from testing.web.pages import address_of, is_page, page_routes, roles_for
 from testing.web.seeding import demo_plant
 from testing.web.site import PHONE, Site, running_site
 
@@ -39,9 +38,9 @@ def unknown(tmp_path_factory: pytest.TempPathFactory, browser: Browser) -> Itera
 @pytest.mark.parametrize("route", page_routes())
 def test_a_page_without_data_says_so(unknown: Site, route: str) -> None:
     path = address_of(route, unknown.repository)
-    if path is None or not is_page(unknown.url, path, unknown.log_in()):
+    if path is None or not is_page(unknown.url, path, unknown.log_in(*roles_for(path))):
         return
-    page = unknown.open(*Role, screen=PHONE)
+    page = unknown.open(*roles_for(path), screen=PHONE)
     page.goto(path)
     page.page.wait_for_function("() => document.documentElement.dataset.ready === 'true'")
     words = page.page.locator("main").inner_text()
@@ -67,9 +66,9 @@ def large(tmp_path_factory: pytest.TempPathFactory, browser: Browser) -> Iterato
 @pytest.mark.parametrize("route", page_routes())
 def test_a_page_of_500_motors_is_whole(large: Site, route: str) -> None:
     path = address_of(route, large.repository)
-    if path is None or not is_page(large.url, path, large.log_in()):
+    if path is None or not is_page(large.url, path, large.log_in(*roles_for(path))):
         return
-    page = large.open(*Role, screen=PHONE)
+    page = large.open(*roles_for(path), screen=PHONE)
     page.goto(path)
     page.require_no_sideways_scroll()
     if path == "/":

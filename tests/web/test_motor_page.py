@@ -1,5 +1,6 @@
 """The page of a motor in a real browser: looking closer at its trend by keys, and what follows by itself."""
 
+import re
 import time
 from dataclasses import replace
 
@@ -67,7 +68,7 @@ def test_a_note_that_was_not_sent_is_still_there_after_a_reload(site: Site) -> N
     page.page.reload()
     page.page.get_by_text("Write a note", exact=True).click()
     expect(page.page.get_by_label("What happened")).to_have_value("noise at the drive end")
-    page.page.get_by_role("button", name="Keep it").click()
+    page.page.get_by_role("button", name="Save note").click()
     expect(page.page.locator("#logbook .notes")).to_contain_text("noise at the drive end")
     assert page.path == f"/motors/{FAULTY}?done=note-kept"
 
@@ -107,7 +108,9 @@ def test_a_note_is_kept_while_it_is_typed_and_its_time_is_that_of_the_viewer(sit
     form.get_by_role("button").click()
     page.page.wait_for_url("**done=note-kept")
     kept = page.page.locator("#logbook .notes li").filter(has_text="terminals cleaned")
-    expect(kept.locator("time").first).to_have_attribute("title", "2026-07-01 10:30 UTC")
+    expect(kept.locator("time").first).to_have_attribute(
+        "title", "2026-07-01 12:30 +02:00 (2026-07-01 10:30 UTC)"
+    )
     expect(form.locator("[name=text]")).to_have_value("")
 
 
@@ -122,3 +125,14 @@ def test_rotor_and_supply_are_told_and_drawn(looked_at: Site) -> None:
         chart.locator("[data-chart-place]").focus()
         chart.locator("[data-chart-place]").press("End")
         expect(chart.locator("[data-chart-readout]")).to_contain_text(value)
+
+
+def test_charts_and_text_write_times_alike(looked_at: Site) -> None:
+    page = looked_at.open(Role.VIEWER)
+    page.goto(f"/motors/{FAULTY}?days=all")
+    text = page.page.locator("main time:not([data-age])").first
+    expect(text).to_have_text(re.compile(r"^\d{4}-\d\d-\d\d \d\d:\d\d(:\d\d)?$"))
+    expect(text).to_have_attribute("title", re.compile(r" (UTC|[+-]\d\d:\d\d) \(.* UTC\)$"))
+    page.page.locator(f"{TREND} [data-chart-place]").focus()
+    readout = page.page.locator(f"{TREND} [data-chart-readout]")
+    expect(readout).to_contain_text(re.compile(r"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d · "))

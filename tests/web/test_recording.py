@@ -190,7 +190,7 @@ def test_what_is_dropped_is_brought(quiet: tuple[Site, list[str]], tmp_path: Pat
     )
     page.page.dispatch_event("[data-drop]", "drop", {"dataTransfer": files})
     expect(page.page.locator("[data-drop-said]")).to_have_text("E.CFG, E.DAT")
-    page.page.get_by_role("button", name="Bring it").click()
+    page.page.get_by_role("button", name="Upload").click()
     expect(page.page.locator("#messages")).to_contain_text("stored, and waits for its diagnosis")
     expect(page.page.locator("h1")).to_contain_text("FAN-A2")
     page.require_accessible()
@@ -203,7 +203,7 @@ def test_files_are_chosen_without_a_script(quiet: tuple[Site, list[str]], tmp_pa
     page = site.open(Role.ENGINEER, javascript=False)
     page.goto("/recordings?motor=PUMP-A1")
     page.page.set_input_files("input[type=file]", [tmp_path / "E.CFG", tmp_path / "E.DAT"])
-    page.page.get_by_role("button", name="Bring it").click()
+    page.page.get_by_role("button", name="Upload").click()
     assert "waits for its diagnosis" in page.page.inner_text("main")
 
 

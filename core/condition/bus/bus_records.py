@@ -5,7 +5,7 @@ from collections.abc import Iterable
 
 from core.condition.bus.neighbours import Neighbour, neighbour_of
 from core.condition.errors import ObservationError
-from core.condition.measuring.measurement import check
+from core.condition.measuring.bounds import check
 from core.condition.observation import SAME_SUPPLY_WITHIN_NS, Observation
 from core.machines.parameters import Motor
 

@@ -6,8 +6,8 @@ from operator import is_
 
 import numpy as np
 
-from core.condition.measuring.measurement import SIXTH
 from core.condition.observation import Observation
+from core.diagnosis.channel_errors import SIXTH
 from core.machines.base import Array
 from core.machines.parameters import Connection, Motor
 from core.signals.sequence import PhaseSequence

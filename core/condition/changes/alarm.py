@@ -6,7 +6,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from core.condition.changes.hypotheses import CAUSES, Cause, Hypotheses
+from core.condition.assessment import Change
+from core.condition.changes.hypotheses import CAUSES, FREE, Cause, Hypotheses
 from core.condition.changes.naming import name, probabilities
 from core.condition.changes.vanishing import Vanishing
 from core.condition.kinds import Kind
@@ -14,6 +15,14 @@ from core.machines.base import Array
 
 CERTAIN: Final = 0.98
 """Posterior probability at which a cause is named."""
+RATHER: Final = 0.9
+"""The same of shorted turns beside an asymmetry of unknown cause: nothing shows that for sure, and its weight
+is no more than a guess."""
+DOUBTFUL: Final = 0.5
+"""Posterior probability below which what is no defect is named no longer."""
+UNLIKELY_ELEMENT: Final = 0.06
+"""Probability of an element behind the relay up to which it takes no name from shorted turns, for the same
+reason."""
 RUNNING: Final = 3
 """Records in a row that have to agree on it."""
 SPACED: Final = 8
@@ -29,6 +38,9 @@ KINDS: Final[Mapping[Cause, Kind]] = {
     Cause.CURRENT_CHANNEL: Kind.CURRENT_CHANNEL,
     Cause.JOINT: Kind.CONNECTION,
     Cause.IMPEDANCE: Kind.PARAMETERS,
+    Cause.ASYMMETRY: Kind.ASYMMETRY,
+    Cause.ELEMENT: Kind.OTHER_LOAD,
+    Cause.OTHER_LOAD: Kind.OTHER_LOAD,
 }
 """What each cause is told as; another recorder changes voltage and current channels."""
 
@@ -61,6 +73,11 @@ class Alarm:
         Whether shorted turns that were named have vanished; None while none were.
     worked_on : bool
         Whether a person has told since of works that may have mended them.
+    alone : Change or None
+        The change before a second one was suspected beside it; None while it has no name, or is shorted
+        turns.
+    errors : list of float
+        E and C with the change in them at that time.
     """
 
     detected_ns: int
@@ -71,6 +88,8 @@ class Alarm:
     surely_above: float = 0.0
     vanishing: Vanishing | None = None
     worked_on: bool = False
+    alone: Change | None = None
+    errors: list[float] = field(default_factory=list)
 
     @property
     def is_to_be_weighed(self) -> bool:
@@ -92,9 +111,19 @@ class Alarm:
         return bool(self.named) and self.records >= SETTLED
 
     @property
+    def may_hide_another(self) -> bool:
+        """Whether what comes after it is to be seen by itself: shorted turns are followed as they grow."""
+        return Kind.SHORTED_TURNS not in self.named
+
+    @property
+    def is_named_beside_turns(self) -> bool:
+        """Whether it is named as something else than shorted turns."""
+        return bool(self.named) and self.may_hide_another
+
+    @property
     def is_to_be_lived_with(self) -> bool:
         """Whether it is no shorted turns for good, so that what comes after it is to be seen by itself."""
-        return self.is_final and Kind.SHORTED_TURNS not in self.named
+        return self.is_final and self.may_hide_another
 
 
 @dataclass(slots=True)
@@ -103,11 +132,11 @@ class Weighing:
 
     Parameters
     ----------
-    probabilities : ndarray, shape (6,)
+    probabilities : ndarray, shape (9,)
         Posterior probability by `Cause`.
-    logs : ndarray, shape (places + 2,)
+    logs : ndarray, shape (places + FREE,)
         Log of evidence times prior of every place.
-    best : ndarray, shape (places + 2, 5)
+    best : ndarray, shape (places + FREE, 5)
         Onset, whether it drifts, size, its deviation and log of evidence that fit every place best.
     """
 
@@ -116,7 +145,7 @@ class Weighing:
     best: Array = field(default_factory=lambda: np.zeros((0, 5)))
 
 
-def weigh(filters: Any, bank: Any, hypotheses: Hypotheses, recorder: Array) -> Weighing:
+def weigh(filters: Any, bank: Any, hypotheses: Hypotheses, level_shares: Array, jumps: Array) -> Weighing:
     """Weigh all causes of a change.
 
     Parameters
@@ -127,22 +156,24 @@ def weigh(filters: Any, bank: Any, hypotheses: Hypotheses, recorder: Array) -> W
         Candidates.
     hypotheses : array of Hypothesis
         All places of all causes.
-    recorder : ndarray, shape (4,)
-        Standard deviations of the jumps that another recorder makes.
+    level_shares : ndarray, shape (levels, nodes)
+        Probability of each axis and leakage of shorted turns at each level.
+    jumps : ndarray, shape (6,)
+        Standard deviations of the jumps that are free.
 
     Returns
     -------
     Weighing
         Their probabilities.
     """
-    places = len(hypotheses) + 2
+    places = len(hypotheses) + FREE
     found = Weighing(np.zeros(CAUSES), np.zeros(places), np.zeros((places, 5)))
-    name(filters, bank, hypotheses, recorder, found.logs, found.best)
+    name(filters, bank, hypotheses, level_shares, jumps, found.logs, found.best)
     probabilities(hypotheses, found.logs, found.probabilities)
     return found
 
 
-def confirm(alarm: Alarm, weighing: Weighing) -> None:
+def confirm(alarm: Alarm, weighing: Weighing, *, is_alone: bool = True) -> None:
     """Name the kind once several records in a row are sure of it.
 
     Parameters
@@ -151,25 +182,53 @@ def confirm(alarm: Alarm, weighing: Weighing) -> None:
         The alarm.
     weighing : Weighing
         Weights after the latest record.
+    is_alone : bool, default True
+        Whether no second change is suspected. Beside one, what is named stays so unless it is shorted turns.
     """
     sure = _certain(weighing.probabilities)
     alarm.running = alarm.running + 1 if sure == alarm.pending else 1
     alarm.pending = sure
-    if sure and alarm.running >= RUNNING and not _takes_back(alarm, sure):
+    if alarm.running < RUNNING or (
+        alarm.is_named_beside_turns and not is_alone and Kind.SHORTED_TURNS not in sure
+    ):
+        return
+    if sure and not _takes_back(alarm, sure, weighing.probabilities):
         alarm.named = sure
+    elif not sure and not DEFECTS & set(alarm.named) and is_doubtful(alarm, weighing):
+        alarm.named = ()
 
 
-def _takes_back(alarm: Alarm, sure: Names) -> bool:
+def is_doubtful(alarm: Alarm, weighing: Weighing) -> bool:
+    """Return whether what an alarm is named as has become unlikely.
+
+    Parameters
+    ----------
+    alarm : Alarm
+        The alarm.
+    weighing : Weighing
+        Weights after the latest record.
+
+    Returns
+    -------
+    bool
+        Whether the probability of its kinds lies below a half.
+    """
+    found = by_kind(weighing.probabilities)
+    return sum(found[kind] for kind in alarm.named) < DOUBTFUL
+
+
+def _takes_back(alarm: Alarm, sure: Names, p: Array) -> bool:
     """Return whether another name would take back a defect of the motor.
 
-    All causes are of one change. After a second one none of them fits, and that with the most freedom, the
-    impedance, seems to fit best. A defect that has been named stays named then.
+    All causes are of one change. After a second one none of them fits, and those with the most freedom, the
+    impedance and another three-phase load, seem to fit best. A defect that has been named stays named then.
     """
     if not DEFECTS & set(alarm.named):
         return False
     if DEFECTS & set(sure):
         return alarm.is_final and alarm.named == (Kind.SHORTED_TURNS,) and sure == (Kind.CONNECTION,)
-    return sure == (Kind.PARAMETERS,) or alarm.is_final
+    is_free = bool(max(p[Cause.IMPEDANCE], p[Cause.OTHER_LOAD]) >= DOUBTFUL)
+    return is_free or alarm.is_final
 
 
 def by_kind(probabilities: Array) -> dict[Kind, float]:
@@ -177,7 +236,7 @@ def by_kind(probabilities: Array) -> dict[Kind, float]:
 
     Parameters
     ----------
-    probabilities : ndarray, shape (6,)
+    probabilities : ndarray, shape (9,)
         Posterior probability by `Cause`.
 
     Returns
@@ -185,7 +244,9 @@ def by_kind(probabilities: Array) -> dict[Kind, float]:
     dict of Kind to float
         Probabilities; they sum to one.
     """
-    found = {kind: float(probabilities[cause]) for cause, kind in KINDS.items()}
+    found = dict.fromkeys(KINDS.values(), 0.0)
+    for cause, kind in KINDS.items():
+        found[kind] += float(probabilities[cause])
     half = 0.5 * float(probabilities[Cause.RECORDER])
     found[Kind.VOLTAGE_CHANNEL] += half
     found[Kind.CURRENT_CHANNEL] += half
@@ -193,49 +254,19 @@ def by_kind(probabilities: Array) -> dict[Kind, float]:
 
 
 def _certain(p: Array) -> Names:
+    load = p[Cause.ELEMENT] + p[Cause.OTHER_LOAD]
+    if load >= CERTAIN:
+        return (Kind.OTHER_LOAD,)
     for cause, kind in KINDS.items():
         if p[cause] >= CERTAIN:
             return (kind,)
-    if p[Cause.SHORTED_TURNS] + p[Cause.JOINT] >= CERTAIN:
+    turns, joint = p[Cause.SHORTED_TURNS], p[Cause.JOINT]
+    unknown, element = p[Cause.ASYMMETRY], p[Cause.ELEMENT]
+    beside = unknown + (element if element <= UNLIKELY_ELEMENT else 0.0)
+    if turns >= RATHER and turns + beside >= CERTAIN:
+        return (Kind.SHORTED_TURNS,)
+    if turns + joint >= RATHER and turns + joint + unknown >= CERTAIN:
         return (Kind.SHORTED_TURNS, Kind.CONNECTION)
     if p[Cause.VOLTAGE_CHANNEL] + p[Cause.CURRENT_CHANNEL] + p[Cause.RECORDER] >= CERTAIN:
         return (Kind.VOLTAGE_CHANNEL, Kind.CURRENT_CHANNEL)
     return ()
-
-
-def taken_up(weighing: Weighing, bank: Any, hypotheses: Hypotheses) -> tuple[Array, Array]:
-    """Return what the filter's state has taken up of the likeliest change of a channel, joint or recorder.
-
-    Parameters
-    ----------
-    weighing : Weighing
-        Weights after the latest record.
-    bank : array of Candidate
-        Candidates.
-    hypotheses : array of Hypothesis
-        All places of all causes.
-
-    Returns
-    -------
-    state : ndarray, shape (7,)
-        What the state has taken up, f g, of a jump of any direction g.
-    covariance : ndarray, shape (7, 7)
-        Its covariance, f Lambda^-1 f'.
-    """
-    turns = hypotheses["cause"] == Cause.SHORTED_TURNS
-    logs = np.append(np.where(turns, -np.inf, weighing.logs[:-2]), weighing.logs[-1])
-    at = int(np.argmax(logs))
-    another = at == len(hypotheses)
-    row = weighing.best[at + 1 if another else at]
-    one, drifts = bank[int(row[0])], bool(row[1])
-    if another or not drifts:
-        first = 0 if another else 2 * int(hypotheses[at]["column"])
-        last = 4 if another else first + 2
-        information, columns = one["step"][first:last, first:last], slice(first, last)
-    else:
-        current = int(hypotheses[at]["column"]) == 1
-        information = one["ramp_current" if current else "ramp_voltage"]
-        columns = slice(8, 10) if current else slice(6, 8)
-    spread = np.linalg.pinv(information)
-    f = one["f"][:, columns]
-    return np.asarray(f @ spread @ one["d"][columns]), np.asarray(f @ spread @ f.T)

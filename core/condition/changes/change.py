@@ -1,27 +1,30 @@
 """A change as people are told of it: at the terminals, in its own measure."""
 
+from collections.abc import Mapping
 from dataclasses import replace
-from math import hypot
-from typing import Any
+from math import hypot, sqrt
+from typing import Any, Final
 
 import numpy as np
 
-from core.condition.assessment import Change, Level
+from core.condition.assessment import NORMAL_95, Change, Level
 from core.condition.changes.alarm import KINDS, Alarm, Weighing, by_kind
-from core.condition.changes.hypotheses import CAUSES, Cause, Hypotheses
+from core.condition.changes.hypotheses import Cause, Hypotheses
 from core.condition.changes.size import size_of
 from core.condition.changes.turns_level import TurnsLevel
 from core.condition.kinds import Kind
-from core.condition.measuring.signatures import channel_of
 from core.condition.observation import VoltageChannels
-from core.machines.parameters import Connection
+from core.diagnosis.channel_errors import channel_of
+from core.diagnosis.turns_place import axis_of, phases_of
+from core.machines.base import Array
+from core.machines.parameters import Connection, Motor
 from core.machines.winding_frame import Winding, terminal_winding
 from core.signals.sequence import PhaseSequence
 
 
 def change_of(
     alarm: Alarm, weighing: Weighing, level: TurnsLevel, hypotheses: Hypotheses, filters: Any, bank: Any,
-    connection: Connection, sequence: PhaseSequence, channels: VoltageChannels,
+    motor: Motor, sequence: PhaseSequence, channels: VoltageChannels,
 ) -> Change:  # fmt: skip
     """Tell of a change.
 
@@ -39,8 +42,8 @@ def change_of(
         The filter.
     bank : array of Candidate
         Candidates.
-    connection : Connection
-        Star or delta.
+    motor : Motor
+        The motor.
     sequence : PhaseSequence
         Order of the supply's phases at the terminals.
     channels : VoltageChannels
@@ -51,6 +54,7 @@ def change_of(
     Change
         The change at the terminals.
     """
+    connection = motor.nameplate.connection
     cause = _likeliest(alarm, weighing)
     since_ns = level.onset_ns
     size: float | None = level.value
@@ -63,18 +67,79 @@ def change_of(
         if at < len(hypotheses):
             size, interval = size_of(filters, bank, hypotheses, at, weighing.best[at])
             channel = _channel(cause, int(hypotheses[at]["place"]), connection, sequence, channels)
-    winding = terminal_winding(level.winding, sequence, connection)
     return Change(
         since_ns=since_ns,
         detected_ns=alarm.detected_ns,
         probabilities=by_kind(weighing.probabilities),
         named=alarm.named,
-        level=Level(level.value, level.deviation, winding, level.path_ratio, level.interval),
+        level=Level(
+            level.value,
+            level.deviation,
+            terminal_winding(level.winding, sequence, connection),
+            level.interval,
+            phases_of(level.windings, motor, sequence),
+            axis_of(level.axes_rad, level.axis_shares, motor, sequence),
+        ),
         channel=channel,
         size=size,
         surely_above=alarm.surely_above,
         size_ci95=interval,
     )
+
+
+CHANNELS: Final[Mapping[tuple[Kind, ...], Cause]] = {
+    (Kind.VOLTAGE_CHANNEL,): Cause.VOLTAGE_CHANNEL,
+    (Kind.CURRENT_CHANNEL,): Cause.CURRENT_CHANNEL,
+}
+"""Kinds whose size is followed while they are in the standing errors."""
+
+
+def drifted(
+    change: Change, moved: Array, spread: Array, hypotheses: Hypotheses, motor: Motor,
+    sequence: PhaseSequence, channels: VoltageChannels,
+) -> Change:  # fmt: skip
+    """Return a change of a channel with what the standing errors have moved by since it was taken into them.
+
+    Parameters
+    ----------
+    change : Change
+        The change as it was then.
+    moved : ndarray, shape (4,)
+        By how much E and C have moved.
+    spread : ndarray, shape (4,)
+        Their variances.
+    hypotheses : array of Hypothesis
+        All places of all causes.
+    motor : Motor
+        The motor.
+    sequence : PhaseSequence
+        Order of the supply's phases at the terminals.
+    channels : VoltageChannels
+        Which voltages are measured.
+
+    Returns
+    -------
+    Change
+        The change as it is now; the same where it is no channel's.
+    """
+    cause = CHANNELS.get(change.named)
+    if cause is None or change.size is None or change.size_ci95 is None:
+        return change
+    connection = motor.nameplate.connection
+    for it in hypotheses[hypotheses["cause"] == cause]:
+        if _channel(cause, int(it["place"]), connection, sequence, channels) == change.channel:
+            break
+    else:
+        return change
+    first, u = 2 * int(it["column"]), complex(it["u"])
+    more = (u.conjugate() * complex(moved[first], moved[first + 1])).real / abs(u) ** 2
+    half = NORMAL_95 * sqrt(0.5 * float(spread[first] + spread[first + 1])) / abs(u)
+    size = change.size + more
+    below, above = (
+        hypot(change.size - change.size_ci95[0], half),
+        hypot(change.size_ci95[1] - change.size, half),
+    )
+    return replace(change, size=size, size_ci95=(size - below, size + above))
 
 
 def continued(change: Change, earlier: Change | None) -> Change:
@@ -115,13 +180,15 @@ def _likeliest(alarm: Alarm, weighing: Weighing) -> Cause:
 def _place(cause: Cause, weighing: Weighing, hypotheses: Hypotheses) -> int:
     """Return the likeliest place of a cause."""
     if cause >= Cause.IMPEDANCE:
-        return len(hypotheses) + int(cause) - (CAUSES - 2)
+        return len(hypotheses) + int(cause) - int(Cause.IMPEDANCE)
     return int(np.argmax(np.where(hypotheses["cause"] == cause, weighing.logs[: len(hypotheses)], -np.inf)))
 
 
 def _channel(
     cause: Cause, place: int, connection: Connection, sequence: PhaseSequence, channels: VoltageChannels
 ) -> Winding | None:
+    if cause is Cause.ELEMENT:
+        return None
     if cause is Cause.VOLTAGE_CHANNEL:
         return channel_of(place, channels, sequence)
     if cause is Cause.CURRENT_CHANNEL or place >= 3:

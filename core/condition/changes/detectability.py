@@ -13,8 +13,10 @@ WITHIN = 10.0
 """Records within which a step is to be seen."""
 NINE_OF_TEN = 1.2815515655446004
 OCCAM = 5.0
-"""Evidence that a step must have beyond the threshold: its onset, size, winding and path are unknown."""
+"""Evidence that a step must have beyond the threshold: its onset, size and direction are unknown."""
 LARGEST = 0.5
+NEGLIGIBLE = 1e-4
+"""Probability of an axis and a leakage below which they are left out."""
 _TURNS = int(Cause.SHORTED_TURNS)
 
 
@@ -32,7 +34,8 @@ def detectable(filters: list[FilterState], hypotheses: list[Hypothesis]) -> floa
     Returns
     -------
     float
-        Equivalent level in the winding and with the path that show least, a fraction of the phase turns.
+        Equivalent level in the winding, on the axis and with the leakage that show least, a fraction of the
+        phase turns.
     """
     state = filters[0]
     H, P = state.H, state.P
@@ -48,7 +51,7 @@ def detectable(filters: list[FilterState], hypotheses: list[Hypothesis]) -> floa
     most, known = 0.0, learnt(state)
     for h in range(len(hypotheses)):
         it = hypotheses[h]
-        if it.cause == _TURNS:
+        if it.cause == _TURNS and it.share > NEGLIGIBLE:
             u, _ = signature(known, it)
             x, y = u.real, u.imag
             information = (x * x * S[1, 1] - 2.0 * x * y * S[0, 1] + y * y * S[0, 0]) / determinant

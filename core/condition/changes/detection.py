@@ -17,6 +17,7 @@ import numpy as np
 from core.condition.changes.evidence import along, learnt_without, most_of_pair, of_free, of_size, signature
 from core.condition.changes.hypotheses import IMPEDANCE, WEIGHTS, Cause, Hypothesis
 from core.condition.filter.state import Candidate, FilterState
+from core.machines.base import Array
 from core.machines.compiled import compiled_as_written as compiled
 
 MOTOR_YEARS = 1_000.0
@@ -32,10 +33,12 @@ LARGEST = 500.0
 HALF = 0.5
 
 _TOTAL_WEIGHT = sum(WEIGHTS)
+_W_ASYMMETRY = HALF * WEIGHTS[Cause.ASYMMETRY] / _TOTAL_WEIGHT
 _W_TURNS = HALF + HALF * WEIGHTS[Cause.SHORTED_TURNS] / _TOTAL_WEIGHT
 _W_CHANNEL = HALF * WEIGHTS[Cause.VOLTAGE_CHANNEL] / _TOTAL_WEIGHT
 _W_RARE = HALF * WEIGHTS[Cause.RECORDER] / _TOTAL_WEIGHT
 _TURNS = int(Cause.SHORTED_TURNS)
+_ELEMENT = int(Cause.ELEMENT)
 
 
 @compiled
@@ -58,9 +61,7 @@ def learn_gap(state: FilterState, elapsed_s: float) -> None:
 
 
 @compiled
-def detect(
-    state: FilterState, bank: list[Candidate], hypotheses: list[Hypothesis], recorder: np.ndarray
-) -> None:
+def detect(state: FilterState, bank: list[Candidate], hypotheses: list[Hypothesis], jumps: Array) -> None:
     """Compute the detector's statistic after a record.
 
     Parameters
@@ -71,22 +72,25 @@ def detect(
         Candidates.
     hypotheses : array of Hypothesis
         All places of all causes.
-    recorder : ndarray, shape (4,)
-        Standard deviations of the jumps that another recorder makes.
+    jumps : ndarray, shape (6,)
+        Standard deviations of the jumps that are free; see `Expectations`.
     """
     total = 0.0
     free = np.full(2, IMPEDANCE)
     for i in range(int(state.candidates)):
         one = bank[i]
-        total += one.weight * _of_candidate(state, one, hypotheses, free, recorder)
+        total += one.weight * _of_candidate(state, one, hypotheses, free, jumps)
     state.statistic = log(max(total, 1.0))
 
 
 @compiled
 def _of_candidate(
-    state: FilterState, one: Candidate, hypotheses: list[Hypothesis], free: np.ndarray, recorder: np.ndarray
+    state: FilterState, one: Candidate, hypotheses: list[Hypothesis], free: Array, jumps: Array
 ) -> float:
-    """Return the mean Bayes factor of one onset, its negligible parts left out."""
+    """Return the mean Bayes factor of one onset, its negligible parts left out.
+
+    With their axis and leakage, shorted turns show in nearly any direction: here in any.
+    """
     total = 0.0
     most = np.zeros((2, 2))
     most[0, 0] = most_of_pair(one.step, 0, one.d, 0)
@@ -95,24 +99,40 @@ def _of_candidate(
     most[1, 1] = most_of_pair(one.ramp_current, 0, one.d, 8)
     out = np.zeros(5)
     for drifts in range(2):
+        if max(most[0, drifts], most[1, drifts]) < NEGLIGIBLE:
+            continue
         known = learnt_without(state, one, drifts == 1)
-        for column in range(2):
-            if most[column, drifts] < NEGLIGIBLE:
+        if most[0, drifts] >= NEGLIGIBLE:
+            information = one.step[0:2, 0:2] if drifts == 0 else one.ramp_voltage
+            vector = one.d[0:2] if drifts == 0 else one.d[6:8]
+            total += HALF * _free(information, vector, jumps, drifts)
+        for h in range(len(hypotheses)):
+            it = hypotheses[h]
+            if it.cause == _TURNS:
+                break
+            if it.cause == _ELEMENT:  # it shows in y as an asymmetry does
                 continue
-            for h in range(len(hypotheses)):
-                it = hypotheses[h]
-                if it.column != column:
-                    continue
-                u, direction = signature(known, it)
-                along(one, column, drifts == 1, u, out)
-                spread = it.spread if drifts == 0 else HALF * it.spread
-                evidence, _, _ = of_size(
-                    out[0], out[1], out[2], out[3], out[4], spread, direction, it.one_sided
-                )
-                weight = _W_TURNS if it.cause == _TURNS else _W_CHANNEL
-                total += HALF * weight * it.share * exp(min(evidence, LARGEST))
+            if most[it.column, drifts] < NEGLIGIBLE:
+                continue
+            u, direction = signature(known, it)
+            along(one, it.column, drifts == 1, u, out)
+            spread = it.spread if drifts == 0 else HALF * it.spread
+            evidence, _, _ = of_size(out[0], out[1], out[2], out[3], out[4], spread, direction, it.one_sided)
+            total += HALF * _W_CHANNEL * it.share * exp(min(evidence, LARGEST))
     if most_of_pair(one.impedance, 0, one.d, 4) > NEGLIGIBLE:
         total += _W_RARE * exp(min(of_free(one.impedance, one.d[4:6], free), LARGEST))
     if max(most[0, 0], most[1, 0]) > NEGLIGIBLE:
-        total += _W_RARE * exp(min(of_free(one.step, one.d[0:4], recorder), LARGEST))
+        total += _W_RARE * exp(min(of_free(one.step, one.d[0:4], jumps[0:4]), LARGEST))
+    return total
+
+
+@compiled
+def _free(information: Array, vector: Array, jumps: Array, drifts: int) -> float:
+    """Return the weighted Bayes factors of shorted turns and of an asymmetry of unknown cause in y."""
+    shape = HALF if drifts == 1 else 1.0
+    total = 0.0
+    for k in range(2):
+        weight = _W_TURNS if k == 0 else _W_ASYMMETRY
+        spreads = np.full(2, shape * jumps[4 + k])
+        total += weight * exp(min(of_free(information, vector, spreads), LARGEST))
     return total

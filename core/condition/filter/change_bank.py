@@ -14,8 +14,9 @@ in linear systems", IEEE Trans. Automatic Control 21 (1976), 108-112.
 
 import numpy as np
 
+from core.condition.filter.circle import fold_circle_candidate
 from core.condition.filter.kalman import STATES
-from core.condition.filter.state import CANDIDATES, SIDES, Candidate, FilterState, SideState
+from core.condition.filter.state import CANDIDATES, SIDES, Candidate, CircleState, FilterState, SideState
 from core.machines.base import Array
 from core.machines.compiled import compiled_as_written as compiled
 
@@ -59,11 +60,16 @@ def add_candidate(state: FilterState, bank: list[Candidate], time_ns: int) -> No
     new.side_f[:] = 0.0
     new.side_information[:] = 0.0
     new.side_d[:] = 0.0
+    new.circle_f[:] = 0.0
+    new.circle_information[:] = 0.0
+    new.circle_d[:] = 0.0
     state.candidates = count + 1.0
 
 
 @compiled
-def fold_candidates(state: FilterState, bank: list[Candidate], sides: list[SideState], rho: float) -> None:
+def fold_candidates(
+    state: FilterState, bank: list[Candidate], sides: list[SideState], circle: CircleState, rho: float
+) -> None:
     """Let one record tell of every candidate.
 
     Parameters
@@ -74,6 +80,8 @@ def fold_candidates(state: FilterState, bank: list[Candidate], sides: list[SideS
         Candidates.
     sides : array of SideState
         Side channels, after the record.
+    circle : CircleState
+        Filter of the current beside its circle, after the record.
     rho : float
         By how much temperature has faded since the record before.
     """
@@ -99,6 +107,7 @@ def fold_candidates(state: FilterState, bank: list[Candidate], sides: list[SideS
         for s in range(SIDES):
             if sides[s].S > 0.0:
                 _fold_side_candidate(one, s, sides[s], ramp)
+        fold_circle_candidate(one, circle, ramp)
 
 
 @compiled

@@ -11,7 +11,7 @@ from math import exp
 
 import numpy as np
 
-from core.condition.filter.state import FilterState
+from core.condition.filter.state import START, FilterState
 from core.machines.base import Array
 from core.machines.compiled import compiled_as_written as compiled
 
@@ -24,12 +24,16 @@ TEMPERATURE = 0.08
 """Standard deviation of Z2's change with the winding's temperature over |Z2|."""
 TIME_CONSTANT_S = 3.0 * 3600.0
 """How long a winding keeps its temperature [s]."""
+DRIFT_FADES = 1.0 - 1.0 / 64.0
+"""Factor of a drift's variance from record to record: no drift goes on for ever."""
 C_NOISE = 0.14
 """Share of C that temperature makes uncertain, for it acts through Z2."""
 Z_NOISE = 0.003
 """Share of j2 that speed and frequency leave uncertain."""
 MOST_Z = 0.6
 """Largest error of Z2 over |Z2| that explains a surprising record: four standard deviations before."""
+CHANGE_NOISE = 0.1
+"""Share of a change by which it varies from record to record: the temperature of R_s, the load."""
 OUTLIER = 12.25
 """Largest squared innovation over its variance: a record counts 6 nats at most."""
 LEARNING_CLIP, LEARNING_MEAN = 6.0, 1.85
@@ -70,8 +74,11 @@ def predict(state: FilterState, elapsed_s: float) -> float:
         P[i, 6] *= rho
         P[6, i] *= rho
     P[6, 6] = rho * rho * P[6, 6] + (1.0 - rho * rho) * TEMPERATURE * TEMPERATURE
-    for i in range(4):
-        P[i, i] += WANDER_EC * WANDER_EC
+    for i in range(2):
+        P[i, i] += WANDER_EC * WANDER_EC + state.drift_E
+        P[i + 2, i + 2] += WANDER_EC * WANDER_EC + state.drift_C
+    state.drift_E *= DRIFT_FADES
+    state.drift_C *= DRIFT_FADES
     for i in range(4, 6):
         P[i, i] += WANDER_Z * WANDER_Z
     return rho
@@ -164,7 +171,9 @@ def rebalance(state: FilterState, balance: float) -> None:
 
 
 @compiled
-def update(state: FilterState, y: complex, j1: complex, j2: complex, bounded: bool) -> None:
+def update(
+    state: FilterState, y: complex, j1: complex, j2: complex, bounded: bool, changed_by: tuple[float, float]
+) -> None:
     """Take one record in; leave H, K, S_inverse and nu in the state.
 
     Parameters
@@ -174,11 +183,13 @@ def update(state: FilterState, y: complex, j1: complex, j2: complex, bounded: bo
     y, j1, j2 : complex
         The record.
     bounded : bool
-        Whether the record teaches no error of Z2 that is larger than a file's can be. After a change it may:
-        what then remains unexplained is of a second one.
+        Whether the record teaches no error of Z2 that is larger than a file's can be. After a change it
+        teaches none at all: shorted turns that go on growing look like one.
+    changed_by : tuple of float
+        What a change that is seen adds to the innovation. A record that it explains is no outlier.
     """
     x, H, K, Si, nu = state.x, state.H, state.K, state.S_inverse, state.nu
-    _rows(j1, j2, H)
+    rows(j1, j2, H)
     PH = np.zeros((STATES, 2))
     _times_transposed(state.P, H, PH)
     a, b, c = _predicted(H, PH)
@@ -190,6 +201,7 @@ def update(state: FilterState, y: complex, j1: complex, j2: complex, bounded: bo
         state.s2
         + (C_NOISE * state.current_deviation) ** 2 * (j1.real**2 + j1.imag**2)
         + Z_NOISE**2 * (j2.real**2 + j2.imag**2)
+        + CHANGE_NOISE**2 * (changed_by[0] ** 2 + changed_by[1] ** 2)
     )
     state.surprise = _chi_square(nominal, a, b, c, nu[0], nu[1])
     state.share = 2.0 * nominal / (a + c + 2.0 * nominal)
@@ -198,7 +210,10 @@ def update(state: FilterState, y: complex, j1: complex, j2: complex, bounded: bo
     if bounded and state.surprise > OUTLIER and _is_no_impedance(state, PH, nominal, a, b, c):
         taught = _of_known_impedance(state.P, PH)
         a, b, c = _predicted(H, taught)
-    R = _bounded_noise(nominal, a, b, c, nu[0], nu[1])
+    odd0, odd1 = nu[0] - changed_by[0], nu[1] - changed_by[1]
+    if _chi_square(nominal, a, b, c, odd0, odd1) > _chi_square(nominal, a, b, c, nu[0], nu[1]):
+        odd0, odd1 = nu[0], nu[1]
+    R = _bounded_noise(nominal, a, b, c, odd0, odd1)
     determinant = (a + R) * (c + R) - b * b
     Si[0, 0], Si[1, 1] = (c + R) / determinant, (a + R) / determinant
     Si[0, 1] = Si[1, 0] = -b / determinant
@@ -206,6 +221,8 @@ def update(state: FilterState, y: complex, j1: complex, j2: complex, bounded: bo
     for i in range(STATES):
         K[i, 0] = taught[i, 0] * Si[0, 0] + taught[i, 1] * Si[1, 0]
         K[i, 1] = taught[i, 0] * Si[0, 1] + taught[i, 1] * Si[1, 1]
+        if not bounded and 4 <= i < 6 and state.records > START:
+            K[i, 0] = K[i, 1] = 0.0
         x[i] += K[i, 0] * nu[0] + K[i, 1] * nu[1]
     _reduce(state.P, PH, H, K, R)
 
@@ -283,8 +300,16 @@ def _tell_noise(state: FilterState, R: float, a: float, b: float, c: float) -> N
 
 
 @compiled
-def _rows(j1: complex, j2: complex, H: Array) -> None:
-    """Fill H, whose rows are the real and the imaginary part of y."""
+def rows(j1: complex, j2: complex, H: Array) -> None:
+    """Fill H, whose rows are the real and the imaginary part of y.
+
+    Parameters
+    ----------
+    j1, j2 : complex
+        The record.
+    H : ndarray, shape (2, 7)
+        Filled.
+    """
     H[0, 0], H[0, 1], H[1, 0], H[1, 1] = 1.0, 0.0, 0.0, 1.0
     H[0, 2], H[0, 3], H[1, 2], H[1, 3] = j1.real, -j1.imag, j1.imag, j1.real
     H[0, 4], H[0, 5], H[1, 4], H[1, 5] = j2.real, -j2.imag, j2.imag, j2.real

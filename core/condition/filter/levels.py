@@ -12,6 +12,8 @@ from core.machines.compiled import compiled_as_written as compiled
 WANDERS = (0.0, 1e-10, 1e-9, 1e-8, 1e-7)
 """Variances by which a level may wander from record to record that are tried."""
 FIRST_SPREAD = 0.1
+ODD, ODD_AMONG = 4.0, 5
+"""Standard deviations beyond which a level is odd, and levels in a row of which it is one."""
 
 
 @compiled
@@ -56,6 +58,26 @@ def levels_since(
         out[i - first, 1] = one.R / one.count / square + warm * warm
         out[i - first, 2] = one.count
     return first
+
+
+@compiled
+def without_odd(levels: Array) -> None:
+    """Put the median of five in a row in the place of a level that lies far beside it: of an odd record.
+
+    Parameters
+    ----------
+    levels : ndarray, shape (n, 3)
+        Level, variance and number of records; the levels change.
+    """
+    number = levels.shape[0]
+    if number < ODD_AMONG:
+        return
+    before = levels[:, 0].copy()
+    for i in range(number):
+        first = min(max(i - ODD_AMONG // 2, 0), number - ODD_AMONG)
+        median = np.median(before[first : first + ODD_AMONG])
+        if (before[i] - median) ** 2 > ODD**2 * levels[i, 1]:
+            levels[i, 0] = median
 
 
 @compiled

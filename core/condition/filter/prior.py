@@ -5,8 +5,9 @@ from math import hypot, pi, sqrt
 
 import numpy as np
 
-from core.condition.measuring.signatures import terminal_turn, voltage_channels
+from core.condition.filter.kalman import TEMPERATURE
 from core.condition.observation import VoltageChannels
+from core.diagnosis.channel_errors import terminal_turn, voltage_channels
 from core.diagnosis.tolerance import negative_impedance_deviation
 from core.machines.base import Array
 from core.machines.parameters import Motor
@@ -18,6 +19,9 @@ OWN_CURRENT = 0.002
 IMPEDANCE = 0.15
 """Standard deviation of the real and of the imaginary part of Z2's error over |Z2|, where the parameters are
 within the usual tolerance."""
+SATURATION_SPREAD = 1.5
+"""Standard deviation of the loss of magnetising inductance per rise of the flux, both relative. It is wider
+than the usual loss (`core.diagnosis.priors.SATURATION`), because the records show the motor's own."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,12 +38,15 @@ class Prior:
         Standard deviation of each part of C: sqrt(s_I^2/3 + 0.002^2) / sqrt 2.
     impedance : float
         Standard deviation of each part of Z2's error over |Z2|.
+    circle : tuple of float
+        Standard deviations of what moves the current off its circle; see `core.condition.filter.circle`.
     """
 
     channels: Array
     own: Array
     current: float
     impedance: float
+    circle: tuple[float, ...]
 
     @property
     def voltage(self) -> Array:
@@ -79,4 +86,15 @@ def prior_of(motor: Motor, channels: VoltageChannels) -> Prior:
         own=0.5 * OWN_VOLTAGE**2 * np.eye(2),
         current=sqrt(0.5) * hypot(sensors.current_deviation(f) / sqrt(3.0), OWN_CURRENT),
         impedance=max(IMPEDANCE, negative_impedance_deviation(motor)),
+        circle=(
+            1.0,
+            1.0,
+            motor.tolerances.stator_resistance_ohm,
+            motor.tolerances.stator_leakage_H,
+            motor.tolerances.stator_self_inductance_H,
+            SATURATION_SPREAD,
+            TEMPERATURE,
+            0.0,
+            0.0,
+        ),
     )

@@ -14,6 +14,10 @@ CANDIDATES: Final = 18
 SIDES: Final = 4
 """Side channels: V0/V1, I0/I1, v2, and how v2 differs from the bus."""
 V0, I0, V2, BUS = range(SIDES)
+CIRCLE_STATES: Final = 9
+CIRCLE_COLUMNS: Final = 5
+"""Changes of the current beside its circle: two of shorted turns, two of a channel, one of a joint."""
+TURNS, CHANNEL, JOINT = range(3)
 RECENT: Final = 64
 """Latest records, or means of several, that are kept for the level since a change."""
 
@@ -67,6 +71,9 @@ class FilterState(Protocol):
         Mean squares by which it differs from the record before, and from that 16 records before.
     statistic, threshold : float
         Logs of the detector's statistic and of its threshold.
+    drift_E, drift_C : float
+        Variances by which each part of E and C wanders besides from record to record, because a drift that
+        has been taken into them may go on.
     """
 
     x: Array
@@ -99,6 +106,8 @@ class FilterState(Protocol):
     w_far: float
     statistic: float
     threshold: float
+    drift_E: float
+    drift_C: float
 
 
 FILTER: Final = np.dtype(
@@ -133,6 +142,8 @@ FILTER: Final = np.dtype(
         ("w_far", "f8"),
         ("statistic", "f8"),
         ("threshold", "f8"),
+        ("drift_E", "f8"),
+        ("drift_C", "f8"),
     ]
 )
 
@@ -198,6 +209,57 @@ SIDE: Final = np.dtype(
 )
 
 
+class CircleState(Protocol):
+    """Kalman filter of the current beside its circle; see `core.condition.filter.circle`.
+
+    Attributes
+    ----------
+    x, spread : ndarray, shape (9,)
+        Unknowns, and their standard deviations before the first record.
+    P : ndarray, shape (9, 9)
+        Covariance.
+    h, K : ndarray, shape (9,)
+        Slopes and gain of the latest record.
+    columns : ndarray, shape (5,)
+        What each change would add to it.
+    nu, S : float
+        Innovation and its variance; a variance of 0 where the record has no such figure.
+    rho : float
+        By how much temperature has faded since the record before.
+    s2, known : float
+        Learnt variance of the noise, and the number of records that it is known from.
+    """
+
+    x: Array
+    spread: Array
+    P: Array
+    h: Array
+    K: Array
+    columns: Array
+    nu: float
+    S: float
+    rho: float
+    s2: float
+    known: float
+
+
+CIRCLE: Final = np.dtype(
+    [
+        ("x", "f8", (CIRCLE_STATES,)),
+        ("spread", "f8", (CIRCLE_STATES,)),
+        ("P", "f8", (CIRCLE_STATES, CIRCLE_STATES)),
+        ("h", "f8", (CIRCLE_STATES,)),
+        ("K", "f8", (CIRCLE_STATES,)),
+        ("columns", "f8", (CIRCLE_COLUMNS,)),
+        ("nu", "f8"),
+        ("S", "f8"),
+        ("rho", "f8"),
+        ("s2", "f8"),
+        ("known", "f8"),
+    ]
+)
+
+
 class Candidate(Protocol):
     """A change that may have begun with one record; see `core.condition.filter.change_bank`.
 
@@ -221,6 +283,13 @@ class Candidate(Protocol):
         Information on the step and the ramp of each side channel.
     side_d : ndarray of complex, shape (4, 2)
         Information vector.
+    circle_f : ndarray, shape (9, 10)
+        What the filter of the circle has taken up of each step and ramp.
+    circle_information : ndarray, shape (2, 3, 3)
+        Information on the step and the ramp of shorted turns, of a channel and of a joint, elements 00, 01,
+        11.
+    circle_d : ndarray, shape (2, 5)
+        Information vector.
     """
 
     time_ns: int
@@ -235,6 +304,9 @@ class Candidate(Protocol):
     side_f: NDArray[np.complex128]
     side_information: Array
     side_d: ComplexArray
+    circle_f: Array
+    circle_information: Array
+    circle_d: Array
 
 
 CANDIDATE: Final = np.dtype(
@@ -251,6 +323,9 @@ CANDIDATE: Final = np.dtype(
         ("side_f", "c16", (SIDES, 2, 2)),
         ("side_information", "f8", (SIDES, 2)),
         ("side_d", "c16", (SIDES, 2)),
+        ("circle_f", "f4", (CIRCLE_STATES, 2 * CIRCLE_COLUMNS)),
+        ("circle_information", "f4", (2, 3, 3)),
+        ("circle_d", "f4", (2, CIRCLE_COLUMNS)),
     ]
 )
 

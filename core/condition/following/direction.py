@@ -20,10 +20,11 @@ from core.condition.following.standing import LOOKED_AT, STANDING_SCORE, USUAL_S
 from core.condition.following.standing_errors import SUSPECTED, StandingErrors, standing_errors_of
 from core.condition.following.standing_on_bus import StandingOnBus
 from core.condition.following.start import fold_start
-from core.condition.measuring.measurement import measure
+from core.condition.measuring.measurement import Measurement, measure
 from core.condition.measuring.parameter_fit import add_record, counts, parameter_errors
 from core.condition.observation import Observation
 from core.condition.severity import level_in_all, level_of, of_one_fault, stands_out
+from core.diagnosis.turns_place import axis_of, phases_of
 from core.machines.parameters import Motor
 from core.machines.winding_frame import terminal_winding
 from core.signals.sequence import PhaseSequence
@@ -48,7 +49,7 @@ class Direction:
         self.state = state
         self._on_bus = StandingOnBus(state.sequence)
         self._expected_of = (motor, state.header.voltage_channels)
-        self._expectations = expectations_of(*self._expected_of, state.header.scale_ohm)
+        self._expectations = expectations_of(*self._expected_of, state.sequence, state.header.scale_ohm)
         self._explanation = Explanation(state, self._expectations)
         self._parameter_errors: tuple[ParameterError, ...] | None = None
 
@@ -128,31 +129,37 @@ class Direction:
             restart_reference(state, self._expect(motor).prior, keep_impedance=known)
         header.as_of_ns = observation.time_ns
         if header.alarm is None and counts(state.figures["records"]):
-            add_record(state.parameter_fits[0], observation, motor)
+            add_record(state.parameter_fits[0], record)
             self._parameter_errors = None
         if state.figures["records"] < START:
             if not header.start:
                 header.since_ns = observation.time_ns
             header.start.append(record)
-            fold_start(state.filters, state.sides, header.start)
+            fold_start(state.filters, state.sides, state.circles, header.start)
             if len(header.start) == START:
                 header.start.clear()
             return
         alarm, expectations = header.alarm, self._expect(motor)
         fold_record(
-            state.filters, state.bank, state.sides, state.recent, expectations.hypotheses,
-            expectations.recorder, record, observation.time_ns, alarm is not None,
+            state.filters, state.bank, state.sides, state.circles, state.recent, expectations.hypotheses,
+            expectations.jumps, record, observation.time_ns, alarm is not None,
         )  # fmt: skip
         self._explanation = Explanation(state, expectations)
         if alarm is None and state.figures["statistic"] >= state.figures["threshold"]:
             alarm = header.alarm = Alarm(observation.time_ns)
             header.standing = header.standing or self._errors()
-            if score_of(motor, header.standing) < USUAL_SCORE:
+            if self._score(header.standing) < USUAL_SCORE:
                 header.called = None  # it was the beginning of this change
         if alarm is not None:
-            follow_up(alarm, state, self._explanation, expectations, motor, record)
+            self._follow_up(alarm, motor, record)
         elif state.figures["records"] % LOOKED_AT == 0.0:
-            self._look_at_standing(motor)
+            self._look_at_standing()
+
+    def _follow_up(self, alarm: Alarm, motor: Motor, record: Measurement) -> None:
+        state, expectations = self.state, self._expectations
+        follow_up(alarm, state, self._explanation, expectations, motor, record)
+        if state.header.alarm is not alarm:
+            self._explanation = Explanation(state, expectations)
 
     def apply(self, event: Event, motor: Motor, edited: Motor) -> None:
         """Let something be known that happened between two records.
@@ -196,13 +203,15 @@ class Direction:
         """
         header, figures = self.state.header, self.state.figures
         standing = self._on_bus.told(
-            motor, self._expectations.prior, header.standing or self._errors(), header.called, bus
+            motor, self._expectations, header.standing or self._errors(), header.called, bus
         )
         records, alarm = int(figures["records"]), header.alarm
         connection = motor.nameplate.connection
         winding = terminal_winding(standing.winding, self.sequence, connection)
         change, levels = (
-            (header.gone or header.kept, ()) if alarm is None else self._explanation.told(alarm, motor)
+            (header.gone or self._explanation.kept(motor), ())
+            if alarm is None
+            else self._explanation.told(alarm, motor)
         )
         return Assessment(
             as_of_ns=header.as_of_ns,
@@ -212,7 +221,12 @@ class Direction:
                 since_ns=header.since_ns,
                 detectable=self._detectable(),
                 standing=Level(
-                    standing.level, standing.deviation, winding, standing.path_ratio, standing.interval
+                    standing.level,
+                    standing.deviation,
+                    winding,
+                    standing.interval,
+                    phases_of(standing.windings, motor, self.sequence),
+                    axis_of(standing.axes_rad, standing.axis_shares, motor, self.sequence),
                 ),
                 standing_score=standing.score,
                 from_bus=standing.from_bus,
@@ -257,7 +271,7 @@ class Direction:
         of = (motor, self.state.header.voltage_channels)
         if of != self._expected_of:
             self._expected_of = of
-            self._expectations = expectations_of(*of, self.state.header.scale_ohm)
+            self._expectations = expectations_of(*of, self.sequence, self.state.header.scale_ohm)
         return self._expectations
 
     def _edit(self, motor: Motor, edited: Motor) -> None:
@@ -270,7 +284,7 @@ class Direction:
             header.standing = header.standing.of_another_class(more)
         if header.called is not None:
             errors = header.called.errors.of_another_class(more)
-            score = score_of(edited, errors)
+            score = self._score(errors)
             called = replace(header.called, errors=errors, score=score)
             header.called = called if score >= STANDING_SCORE else None
 
@@ -280,7 +294,10 @@ class Direction:
             state.filters, state.bank, state.sides, state.header.bus, self._expectations
         )
 
-    def _look_at_standing(self, motor: Motor) -> None:
+    def _score(self, errors: StandingErrors) -> float:
+        return score_of(self._expectations.rough, errors)
+
+    def _look_at_standing(self) -> None:
         """Call a standing fault, and keep the errors that tell it surest: shorted turns do not heal.
 
         A second change beside it, before it is detected, and a supply that stays constant both have the
@@ -291,9 +308,9 @@ class Direction:
         if self.state.figures["statistic"] > SUSPECTED or header.standing is not None:
             return
         errors = self._errors()
-        score = score_of(motor, errors)
+        score = self._score(errors)
         header.held_score = held(score, header.held_score)
-        header.called = surest(motor, errors, score, header.called)
+        header.called = surest(self._expectations.rough, errors, score, header.called)
 
     def _shown(self, motor: Motor) -> Declared | None:
         """Return the shorted turns that the records show; None where there are none."""

@@ -8,6 +8,7 @@ import numpy as np
 from core.condition.filter.state import (
     CANDIDATE,
     CANDIDATES,
+    CIRCLE,
     FILTER,
     RECENT,
     RECENT_RECORD,
@@ -42,10 +43,14 @@ class DirectionState:
         Candidates.
     sides : array of SideState
         Side channels.
+    circles : array of CircleState, shape (1,)
+        Filter of the current beside its circle.
     recent : array of Recent
         Latest records.
     parameter_fits : array of PARAMETER_FIT, shape (1,)
         What the records tell of the parameters in the motor's file.
+    later : DirectionState or None
+        While a change is open, the same with this change in its standing errors: what sees a second one.
     """
 
     def __init__(self, sequence: PhaseSequence) -> None:
@@ -56,8 +61,10 @@ class DirectionState:
         self.figures: Any = self.filters[0]
         self.bank: Any = np.zeros(CANDIDATES, CANDIDATE)
         self.sides: Any = np.zeros(SIDES, SIDE)
+        self.circles: Any = np.zeros(1, CIRCLE)
         self.recent: Any = np.zeros(RECENT, RECENT_RECORD)
         self.parameter_fits: Any = np.zeros(1, PARAMETER_FIT)
+        self.later: DirectionState | None = None
 
     def packed(self) -> tuple[dict[str, Any], bytes]:
         """Return the state as a header of text and numbers as they lie in memory.
@@ -69,7 +76,11 @@ class DirectionState:
         body : bytes
             Numbers.
         """
-        return self.header.as_dict(), b"".join(array.tobytes() for array in self._arrays)
+        words, body = self.header.as_dict(), b"".join(array.tobytes() for array in self.arrays)
+        if self.later is None:
+            return words | {"later": None}, body
+        later, more = self.later.packed()
+        return words | {"later": later}, body + more
 
     @classmethod
     def unpacked(cls, sequence: PhaseSequence, words: Mapping[str, Any], body: bytes) -> "DirectionState":
@@ -95,10 +106,13 @@ class DirectionState:
             If the body is of another length.
         """
         state = cls(sequence)
-        if len(body) != sum(array.nbytes for array in state._arrays):
+        later, size = words["later"], sum(array.nbytes for array in state.arrays)
+        if len(body) < size or (later is None and len(body) > size):
             raise ValueError("the saved state has another layout: fold the records again")
+        if later is not None:
+            state.later = cls.unpacked(sequence, later, body[size:])
         start = 0
-        for array in state._arrays:
+        for array in state.arrays:
             array[:] = np.frombuffer(body, array.dtype, count=array.size, offset=start)
             start += array.nbytes
         state.header = Header.from_dict(words)
@@ -114,6 +128,18 @@ class DirectionState:
         """
         return DirectionState.unpacked(self.sequence, *self.packed())
 
+    def take(self, later: "DirectionState") -> None:
+        """Go on with the numbers of another state.
+
+        Parameters
+        ----------
+        later : DirectionState
+            The other state.
+        """
+        for mine, other in zip(self.arrays, later.arrays, strict=True):
+            mine[:] = other
+
     @property
-    def _arrays(self) -> tuple[Any, ...]:
-        return self.filters, self.sides, self.bank, self.recent, self.parameter_fits
+    def arrays(self) -> tuple[Any, ...]:
+        """All numbers."""
+        return self.filters, self.sides, self.circles, self.bank, self.recent, self.parameter_fits

@@ -2,9 +2,11 @@
 
 import numpy as np
 
+from core.condition.changes.before_change import expected
 from core.condition.changes.detection import detect, learn_gap
 from core.condition.changes.hypotheses import Hypothesis
-from core.condition.filter.change_bank import add_candidate, fold_candidates
+from core.condition.filter.change_bank import RAMP_LENGTH, add_candidate, fold_candidates
+from core.condition.filter.circle import begin_circle, expected_beside, fold_circle
 from core.condition.filter.kalman import (
     FIRST_KNOWN,
     learn_noise,
@@ -15,7 +17,17 @@ from core.condition.filter.kalman import (
     update,
 )
 from core.condition.filter.side_channels import begin, fold_side, noise_share_of_currents
-from core.condition.filter.state import I0, RECENT, SIDES, V0, Candidate, FilterState, Recent, SideState
+from core.condition.filter.state import (
+    I0,
+    RECENT,
+    SIDES,
+    V0,
+    Candidate,
+    CircleState,
+    FilterState,
+    Recent,
+    SideState,
+)
 from core.condition.measuring.measurement import Measurement
 from core.machines.base import Array
 from core.machines.compiled import compiled_as_written as compiled
@@ -27,8 +39,9 @@ FIRST_BALANCE = 16.0
 
 @compiled
 def fold_record(
-    filters: list[FilterState], bank: list[Candidate], sides: list[SideState], recent: list[Recent],
-    hypotheses: list[Hypothesis], recorder: Array, record: Measurement, time_ns: int, changed: bool,
+    filters: list[FilterState], bank: list[Candidate], sides: list[SideState], circles: list[CircleState],
+    recent: list[Recent], hypotheses: list[Hypothesis], jumps: Array, record: Measurement, time_ns: int,
+    changed: bool,
 ) -> None:  # fmt: skip
     """Take one record in and look for a change.
 
@@ -40,12 +53,14 @@ def fold_record(
         Candidates.
     sides : array of SideState
         Side channels.
+    circles : array of CircleState, shape (1,)
+        Filter of the current beside its circle.
     recent : array of Recent
         Latest records.
     hypotheses : array of Hypothesis
         All places of all causes.
-    recorder : ndarray, shape (4,)
-        Standard deviations of the jumps that another recorder makes.
+    jumps : ndarray, shape (6,)
+        Standard deviations of the jumps that are free; see `Expectations`.
     record : Measurement
         The record.
     time_ns : int
@@ -60,22 +75,32 @@ def fold_record(
     count = int(state.recent)
     earlier = recent[max(count - APART, 0)].j2 if count > 0 else state.w
     smooth(state, regressor(state, record.y, record.j2), earlier)
-    update(state, record.y, record.j1, state.w, bounded=not changed)
+    added, at, drifts = (0.0, 0.0), -1, False
+    if changed:
+        added, at, drifts = expected(state, bank, record.j1, state.w)
+    beside = 0.0
+    if at >= 0:
+        ramp = (state.records - bank[at].onset + 1.0) / RAMP_LENGTH
+        beside = expected_beside(bank[at], record.circle, ramp, drifts)
+    update(state, record.y, record.j1, state.w, not changed, added)
     for s in range(SIDES):
         fold_side(sides[s], s, record)
-    fold_candidates(state, bank, sides, rho)
+    fold_circle(circles[0], record.circle, record.j1, record.elapsed_s, not changed, beside)
+    fold_candidates(state, bank, sides, circles[0], rho)
     if not changed:
         learn_noise(state)
         if state.records >= FIRST_BALANCE and np.log2(state.records) % 1.0 == 0.0:
             rebalance(state, noise_share_of_currents(sides[V0], sides[I0], state.s2))
     learn_gap(state, record.elapsed_s)
-    detect(state, bank, hypotheses, recorder)
+    detect(state, bank, hypotheses, jumps)
     _remember(state, recent, record, time_ns, changed)
     state.records += 1.0
 
 
 @compiled
-def fold_first(filters: list[FilterState], sides: list[SideState], record: Measurement) -> None:
+def fold_first(
+    filters: list[FilterState], sides: list[SideState], circles: list[CircleState], record: Measurement
+) -> None:
     """Take one of the first records in, which nothing can be compared with.
 
     Parameters
@@ -84,21 +109,24 @@ def fold_first(filters: list[FilterState], sides: list[SideState], record: Measu
         The filter.
     sides : array of SideState
         Side channels.
+    circles : array of CircleState, shape (1,)
+        Filter of the current beside its circle.
     record : Measurement
         The record.
     """
     state = filters[0]
     predict(state, record.elapsed_s)
     state.w = state.w_raw = regressor(state, record.y, record.j2)
-    update(state, record.y, record.j1, state.w, bounded=False)
+    update(state, record.y, record.j1, state.w, False, (0.0, 0.0))  # noqa: FBT003
     for s in range(SIDES):
         fold_side(sides[s], s, record)
+    fold_circle(circles[0], record.circle, record.j1, record.elapsed_s, True, 0.0)  # noqa: FBT003
     learn_gap(state, record.elapsed_s)
     state.records += 1.0
 
 
 @compiled
-def restart(filters: list[FilterState], sides: list[SideState]) -> None:
+def restart(filters: list[FilterState], sides: list[SideState], circles: list[CircleState]) -> None:
     """Begin a reference: forget all but what the filter starts from.
 
     Parameters
@@ -107,6 +135,8 @@ def restart(filters: list[FilterState], sides: list[SideState]) -> None:
         The filter; x0 and P0 are set.
     sides : array of SideState
         Side channels.
+    circles : array of CircleState, shape (1,)
+        Filter of the current beside its circle; its spread is set.
     """
     state = filters[0]
     state.x[:] = state.x0
@@ -116,8 +146,10 @@ def restart(filters: list[FilterState], sides: list[SideState]) -> None:
     state.noise_known = FIRST_KNOWN
     state.w_near, state.w_far = 0.0, 0.0
     state.statistic = state.surprise = state.log_likelihood = 0.0
+    state.drift_E = state.drift_C = 0.0
     for s in range(SIDES):
         begin(sides[s], s)
+    begin_circle(circles[0])
 
 
 @compiled

@@ -11,6 +11,7 @@ from core.condition.changes.vanishing import Vanishing
 from core.condition.following.standing import Called
 from core.condition.following.standing_errors import StandingErrors
 from core.condition.kinds import Kind
+from core.condition.measuring.circle import BesideCircle
 from core.condition.measuring.measurement import Measurement
 from core.condition.observation import Observation, VoltageChannels
 
@@ -37,7 +38,9 @@ class Header:
     alarm : Alarm or None
         The change that is seen.
     kept : Change or None
-        An earlier change of the channels or the impedance, with which the reference has been learnt.
+        An earlier change of the channels or the impedance that is in the standing errors.
+    kept_errors : list of float
+        E and C at the time of which it is told.
     gone : Change or None
         Shorted turns that have vanished, without anybody telling why.
     standing : StandingErrors or None
@@ -61,6 +64,7 @@ class Header:
     declared: Declared | None = None
     alarm: Alarm | None = None
     kept: Change | None = None
+    kept_errors: list[float] = field(default_factory=list)
     gone: Change | None = None
     standing: StandingErrors | None = None
     called: Called | None = None
@@ -102,6 +106,7 @@ class Header:
             "declared": None if self.declared is None else asdict(self.declared),
             "alarm": None if self.alarm is None else asdict(self.alarm),
             "kept": None if self.kept is None else asdict(self.kept),
+            "kept_errors": self.kept_errors,
             "gone": None if self.gone is None else asdict(self.gone),
             "standing": None if self.standing is None else asdict(self.standing),
             "called": None if self.called is None else asdict(self.called),
@@ -134,6 +139,8 @@ class Header:
                 vanishing = words["alarm"]["vanishing"]
                 alarm.vanishing = Vanishing(**{**vanishing, "change": _change(vanishing["change"])})
             alarm.pending = tuple(Kind(kind) for kind in alarm.pending)
+            alone = words["alarm"]["alone"]
+            alarm.alone = None if alone is None else _change(alone)
         return cls(
             recorder=words["recorder"],
             voltage_channels=VoltageChannels(words["voltage_channels"]),
@@ -144,6 +151,7 @@ class Header:
             declared=None if words["declared"] is None else _declared(words["declared"]),
             alarm=alarm,
             kept=None if words["kept"] is None else _change(words["kept"]),
+            kept_errors=words["kept_errors"],
             gone=None if words["gone"] is None else _change(words["gone"]),
             standing=None if words["standing"] is None else StandingErrors(**words["standing"]),
             called=None if words["called"] is None else _called(words["called"]),
@@ -166,6 +174,7 @@ def _declared(words: Mapping[str, Any]) -> Declared:
 def _change(words: Mapping[str, Any]) -> Change:
     level = dict(words["level"])
     level["interval"] = _interval(level["interval"])
+    level["phases"] = None if level["phases"] is None else tuple(level["phases"])
     return Change(
         since_ns=words["since_ns"],
         detected_ns=words["detected_ns"],
@@ -190,7 +199,7 @@ def _interval(ends: Sequence[float] | None) -> tuple[float, float] | None:
 
 def _as_list(record: Measurement) -> list[float | bool]:
     values: list[float | bool] = []
-    for value in record:
+    for value in (*record[:-1], record.circle.distance, record.circle.outwards, *record.circle.slopes):
         values.extend((value.real, value.imag) if isinstance(value, complex) else (value,))
     return values
 
@@ -198,5 +207,9 @@ def _as_list(record: Measurement) -> list[float | bool]:
 def _from_list(values: Sequence[float]) -> Measurement:
     elapsed_s, *parts = values
     y, j1, j2, v2, v0, i0, i2, bus = (complex(parts[2 * k], parts[2 * k + 1]) for k in range(8))
-    scatter, has_v0, has_bus = parts[16:]
-    return Measurement(elapsed_s, y, j1, j2, v2, v0, i0, i2, bus, scatter, bool(has_v0), bool(has_bus))
+    scatter, has_v0, has_bus, distance, real, imaginary, *slopes = parts[16:]
+    a, b, c, d, e, f = slopes
+    circle = BesideCircle(distance, complex(real, imaginary), (a, b, c, d, e, f))
+    return Measurement(
+        elapsed_s, y, j1, j2, v2, v0, i0, i2, bus, scatter, bool(has_v0), bool(has_bus), circle
+    )

@@ -1,9 +1,10 @@
 """What becomes of an open alarm: it is named, lived with, taken back or closed."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from core.condition.assessment import Change
-from core.condition.changes.alarm import Alarm, confirm, taken_up
+from core.condition.changes.alarm import Alarm, confirm
 from core.condition.changes.before_change import before_change
 from core.condition.changes.vanishing import Vanishing
 from core.condition.filter.prior import Prior
@@ -11,6 +12,7 @@ from core.condition.following.direction_state import DirectionState
 from core.condition.following.expectations import Expectations
 from core.condition.following.explanation import Explanation
 from core.condition.following.reference import restart_reference
+from core.condition.following.second_change import follow_second, is_suspected, take_over
 from core.condition.kinds import Kind
 from core.condition.measuring.measurement import Measurement
 from core.condition.severity import is_shorted_turns
@@ -22,7 +24,7 @@ CLEARED = 3.0
 
 def follow_up(
     alarm: Alarm, state: DirectionState, explanation: Explanation, expectations: Expectations,
-    motor: Motor, record: Measurement,
+    motor: Motor, record: Measurement, *, is_second: bool = False,
 ) -> None:  # fmt: skip
     """See what a record makes of an open alarm.
 
@@ -40,6 +42,8 @@ def follow_up(
         The motor as it is.
     record : Measurement
         The record.
+    is_second : bool, default False
+        Whether the alarm is that of a second change: a third one is looked for when that is in what stands.
     """
     alarm.records += 1
     vanishing = alarm.vanishing
@@ -49,10 +53,12 @@ def follow_up(
             # Shorted turns do not heal. Unless somebody told of works, a contact may come and go.
             if not alarm.worked_on:
                 state.header.gone = replace(vanishing.change, until_ns=vanishing.last_ns)
-            _take_back(state)
+            _take_back(state, vanishing.reference)
             return
+    if alarm.may_hide_another and not is_second:
+        follow_second(state, expectations, motor, record, follow_up)
     if alarm.is_to_be_weighed:
-        confirm(alarm, explanation.weighing)
+        _give_name(alarm, state, explanation, motor)
     if alarm.may_be_called:
         change = explanation.change(alarm, motor)
         if is_shorted_turns(change):
@@ -60,8 +66,27 @@ def follow_up(
         _keep_what_is_shown(alarm, change, explanation, state.header.as_of_ns)
     if state.figures["statistic"] < CLEARED:
         _close(state)
-    elif alarm.is_to_be_lived_with:
-        _live_with(alarm, state, explanation, expectations, motor)
+    elif state.later is not None and (alarm.is_to_be_lived_with or _is_turns(state.later)):
+        take_over(state, alarm)
+
+
+def _give_name(alarm: Alarm, state: DirectionState, explanation: Explanation, motor: Motor) -> None:
+    """Name the change, and keep it as it is while it is alone."""
+    is_alone = not is_suspected(state)
+    confirm(alarm, explanation.weighing, is_alone=is_alone)
+    if not alarm.may_hide_another:
+        state.later = None
+    if not alarm.is_named_beside_turns:
+        alarm.alone = None
+    elif is_alone or alarm.alone is None:
+        alarm.alone = explanation.change(alarm, motor)
+        alarm.errors = [] if state.later is None else state.later.filter.x[:4].tolist()
+
+
+def _is_turns(later: DirectionState) -> bool:
+    """Return whether a second change is named as shorted turns, or as these or a joint."""
+    alarm = later.header.alarm
+    return alarm is not None and not alarm.may_hide_another
 
 
 def maintain(state: DirectionState, prior: Prior) -> None:
@@ -96,25 +121,12 @@ def _keep_what_is_shown(alarm: Alarm, change: Change, explanation: Explanation, 
     alarm.vanishing = Vanishing.of(change, level.shown, level.reference, time_ns) if shown else None
 
 
-def _live_with(
-    alarm: Alarm, state: DirectionState, explanation: Explanation, expectations: Expectations, motor: Motor
-) -> None:
-    """Learn a reference with the change, so that another one is seen; the change stays told."""
-    header = state.header
-    kept, gone = explanation.change(alarm, motor), header.gone
-    standing, called = header.standing, header.called
-    # The impedance has taken up some of the change.
-    taken, spread = taken_up(explanation.weighing, state.bank, expectations.hypotheses)
-    state.filter.x -= taken
-    state.filter.P += spread
-    restart_reference(state, expectations.prior, keep_impedance=Kind.PARAMETERS not in alarm.named)
-    header.kept, header.gone, header.standing, header.called = kept, gone, standing, called
-
-
-def _take_back(state: DirectionState) -> None:
-    """Go back to the reference as it was before the change."""
+def _take_back(state: DirectionState, reference: Sequence[float] | None = None) -> None:
+    """Go back to the reference as it was before the change; it is given where the change is gone by now."""
     kalman = state.filter
     kalman.x[:], kalman.P[:] = before_change(kalman, state.bank)
+    if reference is not None:
+        kalman.x[:] = reference
     kalman.recent, kalman.block = 0.0, 1.0
     _close(state)
 
@@ -125,3 +137,4 @@ def _close(state: DirectionState) -> None:
     header.alarm = None
     header.standing = None if header.kept is None else header.standing
     state.filter.candidates = 0.0
+    state.later = None

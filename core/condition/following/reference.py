@@ -2,12 +2,14 @@
 
 import numpy as np
 
+from core.condition.filter.circle import begin_circle
 from core.condition.filter.impedance import impedance_alone, move_impedance
 from core.condition.filter.kalman import TEMPERATURE
 from core.condition.filter.prior import Prior, prior_of
 from core.condition.following.direction_state import DirectionState
 from core.condition.following.folding import restart
-from core.condition.measuring.measurement import negative_impedance
+from core.condition.measuring.circle import NOTHING
+from core.condition.measuring.impedance import negative_impedance
 from core.machines.parameters import Motor
 from core.signals.sequence import PhaseSequence
 
@@ -28,7 +30,7 @@ def begun(motor: Motor, sequence: PhaseSequence) -> DirectionState:
         Nothing is known but the motor's file.
     """
     state = DirectionState(sequence)
-    rated = negative_impedance(motor.parameters, motor.nameplate.rated_frequency_Hz)
+    rated = negative_impedance(motor, motor.nameplate.rated_frequency_Hz)
     state.header.scale_ohm = abs(rated)
     state.filter.nominal = rated / abs(rated)
     restart_reference(state, prior_of(motor, state.header.voltage_channels), keep_impedance=False)
@@ -55,13 +57,16 @@ def restart_reference(state: DirectionState, prior: Prior, *, keep_impedance: bo
         x[4:], P[4:, 4:] = impedance_alone(kalman)
     kalman.x0[:], kalman.P0[:] = x, P
     kalman.current_deviation = prior.current
-    restart(state.filters, state.sides)
+    state.circles["spread"] = prior.circle
+    restart(state.filters, state.sides, state.circles)
     state.parameter_fits[:] = 0
     header.start.clear()
     header.accepted, header.declared = False, None
     header.alarm = header.standing = header.kept = header.gone = header.called = None
     header.held_score = 0.0
     header.bus.restart()
+    header.kept_errors = []
+    state.later = None
 
 
 def edit_impedance(state: DirectionState, motor: Motor, edited: Motor) -> None:
@@ -75,10 +80,14 @@ def edit_impedance(state: DirectionState, motor: Motor, edited: Motor) -> None:
         The motor before and after its file was edited.
     """
     frequency_hz, scale_ohm = motor.nameplate.rated_frequency_Hz, state.header.scale_ohm
-    before = negative_impedance(motor.parameters, frequency_hz) / scale_ohm
-    after = negative_impedance(edited.parameters, frequency_hz) / scale_ohm
+    before = negative_impedance(motor, frequency_hz) / scale_ohm
+    after = negative_impedance(edited, frequency_hz) / scale_ohm
     start = state.header.start
     if motor.parameters != edited.parameters:
         state.parameter_fits[:] = 0
+        state.circles["spread"] = prior_of(edited, state.header.voltage_channels).circle
+        begin_circle(state.circles.view(np.recarray)[0])
     move_impedance(state.filter, before, after)
-    start[:] = [record._replace(y=record.y + (before - after) * record.j2) for record in start]
+    start[:] = [
+        record._replace(y=record.y + (before - after) * record.j2, circle=NOTHING) for record in start
+    ]

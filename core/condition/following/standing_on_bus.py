@@ -7,9 +7,10 @@ import numpy as np
 from core.condition.bus.neighbours import CommonAsymmetry, StandingEstimate
 from core.condition.complex_parts import rotated, symmetric, turned
 from core.condition.filter.prior import Prior
+from core.condition.following.expectations import Expectations
 from core.condition.following.standing import Called, Standing, standing_of
 from core.condition.following.standing_errors import StandingErrors
-from core.condition.measuring.signatures import terminal_turn
+from core.diagnosis.channel_errors import terminal_turn
 from core.machines.parameters import Motor
 from core.signals.sequence import PhaseSequence
 
@@ -58,7 +59,7 @@ class StandingOnBus:
         )
 
     def told(
-        self, motor: Motor, prior: Prior, errors: StandingErrors, called: Called | None,
+        self, motor: Motor, expected: Expectations, errors: StandingErrors, called: Called | None,
         bus: Sequence[StandingEstimate],
     ) -> Standing:  # fmt: skip
         """Return what stands, and of a standing fault that was called what told it surest.
@@ -69,8 +70,8 @@ class StandingOnBus:
         ----------
         motor : Motor
             The motor as it is.
-        prior : Prior
-            Spread of the standing errors before the first record.
+        expected : Expectations
+            What the motor's file tells of its records.
         errors : StandingErrors
             The standing errors now.
         called : Called or None
@@ -83,20 +84,20 @@ class StandingOnBus:
         Standing
             The likeliest shorted turns.
         """
-        now = self._judged(motor, prior, errors, bus)
+        now = self._judged(motor, expected, errors, bus)
         if called is None or now.interval[1] <= motor.limits.fault_level:
             return now
-        surest = self._judged(motor, prior, called.errors, bus)
+        surest = self._judged(motor, expected, called.errors, bus)
         return max(now, surest, key=lambda standing: standing.score)
 
     def _judged(
-        self, motor: Motor, prior: Prior, errors: StandingErrors, bus: Sequence[StandingEstimate]
+        self, motor: Motor, expected: Expectations, errors: StandingErrors, bus: Sequence[StandingEstimate]
     ) -> Standing:
-        own = self.estimate(motor, prior, errors) if bus else None
+        own = self.estimate(motor, expected.prior, errors) if bus else None
         common = self._common.of(own, bus) if own else None
         if own is None or common is None:
             asymmetry = np.array([errors.real, errors.imaginary])
-            return standing_of(motor, asymmetry, symmetric(errors.spread), from_bus=False)
+            return standing_of(expected.rough, asymmetry, symmetric(errors.spread), from_bus=False)
         asymmetry = turned(own.asymmetry - common[0], terminal_turn(motor))
         covariance = rotated(own.covariance + common[1], terminal_turn(motor))
-        return standing_of(motor, asymmetry, covariance, from_bus=True)
+        return standing_of(expected.rough, asymmetry, covariance, from_bus=True)

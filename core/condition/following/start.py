@@ -15,7 +15,7 @@ NOISE_STEPS: Final = tuple(2.0**k for k in range(11))
 """Multiples of the records' own scatter that the first records are tried with."""
 
 
-def fold_start(filters: Any, sides: Any, records: Sequence[Measurement]) -> None:
+def fold_start(filters: Any, sides: Any, circles: Any, records: Sequence[Measurement]) -> None:
     """Fold the first records in their order of ordinariness, with the noise that makes them likeliest.
 
     Parameters
@@ -24,32 +24,36 @@ def fold_start(filters: Any, sides: Any, records: Sequence[Measurement]) -> None
         The filter; x0 and P0 are set.
     sides : array of SideState
         Side channels.
+    circles : array of CircleState, shape (1,)
+        Filter of the current beside its circle.
     records : sequence of Measurement
         All records so far, in the order of time.
     """
     ordered = in_order(records)
     filters["balance"] = 0.0
-    filters["balance"] = min(noise_of_currents(ordered) / _fold_likeliest(filters, sides, ordered), 1.0)
-    _fold_likeliest(filters, sides, ordered)
+    filters["balance"] = min(
+        noise_of_currents(ordered) / _fold_likeliest(filters, sides, circles, ordered), 1.0
+    )
+    _fold_likeliest(filters, sides, circles, ordered)
 
 
-def _fold_likeliest(filters: Any, sides: Any, records: Sequence[Measurement]) -> float:
+def _fold_likeliest(filters: Any, sides: Any, circles: Any, records: Sequence[Measurement]) -> float:
     """Fold the first records with the noise that they tell; return its variance."""
     steps = starting_noise(records) * np.array(NOISE_STEPS)
-    logs = np.array([_fold_all(filters, sides, records, s2) for s2 in steps.tolist()])
+    logs = np.array([_fold_all(filters, sides, circles, records, s2) for s2 in steps.tolist()])
     shares = np.exp(logs - logs.max())
     s2 = float(shares @ steps / shares.sum())
-    _fold_all(filters, sides, records, s2)
+    _fold_all(filters, sides, circles, records, s2)
     return s2
 
 
-def _fold_all(filters: Any, sides: Any, records: Sequence[Measurement], s2: float) -> float:
+def _fold_all(filters: Any, sides: Any, circles: Any, records: Sequence[Measurement], s2: float) -> float:
     """Fold the first records with noise of a variance; return the log of their likelihood."""
-    restart(filters, sides)
+    restart(filters, sides, circles)
     filters["s2"] = s2
     total = 0.0
     for record in records:
-        fold_first(filters, sides, record)
+        fold_first(filters, sides, circles, record)
         total += filters["log_likelihood"].item()
     return total
 

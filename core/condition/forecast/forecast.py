@@ -14,7 +14,6 @@ the records may have drifted, and the growth ahead may be faster or slower than 
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from math import log
 from typing import Final
 
@@ -22,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.condition.assessment import NORMAL_95, Level
+from core.condition.forecast.outcome import Forecast
 from core.condition.forecast.trends import filtered, onset, reached, scatter, smoothed
 from core.units import NANOSECONDS_PER_DAY
 
@@ -76,28 +76,6 @@ _LN_PRIOR = np.log(
         (1.0 - STEADY_SHARE) / (DENSITIES.size * (RATES.size - 1)),
     )
 )
-
-
-@dataclass(frozen=True, slots=True)
-class Forecast:
-    """Growth of the level, and the time until it reaches a limit.
-
-    Parameters
-    ----------
-    limit : float
-        Level that is asked for, a fraction of the phase turns.
-    days : tuple of float or None
-        Time from the latest record until the limit: 5, 50 and 95 % quantiles of the mixture [days]. The
-        outer ones are to be read as an interval of 80 %. None where the records show no trend towards the
-        limit.
-    growth_per_day : float or None
-        Growth of the level today, a fraction of the phase turns a day; None where nothing changes, and
-        where there are too few records to tell.
-    """
-
-    limit: float
-    days: tuple[float, float, float] | None = None
-    growth_per_day: float | None = None
 
 
 def limit_ahead(level: float, limit: float) -> float:

@@ -1,19 +1,22 @@
 """The asymmetry of a motor in one record, told as the shorted turns that would look the same."""
 
-from core.condition.measuring.measurement import measure, negative_impedance
-from core.condition.measuring.signatures import A, shorted_turns
+from core.condition.measuring.impedance import negative_impedance
+from core.condition.measuring.measurement import measure
+from core.condition.measuring.turns_grid import turns_grid
 from core.condition.observation import Observation
+from core.diagnosis.channel_errors import A
 from core.machines.parameters import Motor
 from core.machines.winding_frame import terminal_winding
 from core.signals.sequence import PhaseSequence
 
 
-def asymmetry_of(observation: Observation, motor: Motor, path_ratio: float = 0.0) -> complex:
+def asymmetry_of(observation: Observation, motor: Motor) -> complex:
     """Return the asymmetry of one record in the plane of the phases.
 
-    Shorted turns of phase a point along 1, of phase b along a = exp(j 120 deg), of phase c along a^2; the
-    length is the level. An error of a sensor or of the motor's parameters points anywhere. It is what this
-    record shows by itself; a condition is judged from many.
+    Shorted turns of phase a point along 1, of phase b along a = exp(j 120 deg), of phase c along a^2, on the
+    average of what their axis and leakage may be: one coil's may lie 40 degrees beside it. The length is the
+    level. An error of a sensor or of the motor's parameters points anywhere. It is what this record shows by
+    itself; a condition is judged from many.
 
     Parameters
     ----------
@@ -21,8 +24,6 @@ def asymmetry_of(observation: Observation, motor: Motor, path_ratio: float = 0.0
         Phasors of the record.
     motor : Motor
         The motor.
-    path_ratio : float, default 0.0
-        Resistance of the path over that of the shorted turns.
 
     Returns
     -------
@@ -34,9 +35,9 @@ def asymmetry_of(observation: Observation, motor: Motor, path_ratio: float = 0.0
     ObservationError
         If a number is missing, infinite or impossible, or the motor was not running on three phases.
     """
-    scale_ohm = abs(negative_impedance(motor.parameters, motor.nameplate.rated_frequency_Hz))
+    scale_ohm = abs(negative_impedance(motor, motor.nameplate.rated_frequency_Hz))
     y = measure(observation, motor, scale_ohm, 0.0).y
-    level = y / shorted_turns(motor, 0, path_ratio)
+    level = y / turns_grid(motor, PhaseSequence.ABC, scale_ohm).mean
     if observation.sequence is PhaseSequence.ACB:
         # The winding frame is mirrored: its first winding stays an axis, the two others change places.
         return level.conjugate() * A ** terminal_winding(0, observation.sequence, motor.nameplate.connection)

@@ -1,5 +1,6 @@
 """Rotor, supply and load of a record, beside its stator: no error of theirs takes the diagnosis away."""
 
+from core.condition.measuring.seen_speed import speed_of
 from core.diagnosis.acceptance import Acceptance, Accepted
 from core.diagnosis.verdict import Diagnosis, not_finite
 from core.machines.parameters import Motor
@@ -12,17 +13,24 @@ from core.rotor.finding import RotorFinding, RotorState
 from core.rotor.pulsation import examine_pulsation
 from core.rotor.running_point import without_delay
 from core.rotor.swing_findings import EccentricityFinding, PulsationFinding
+from core.speed.finding import SpeedFinding
+from core.speed.memory import LineMemory
+from core.speed.telling import not_seen
 from core.supply.figures import SupplyFigures
 from core.supply.measuring import measure_supply
 
 NO_ROTOR = "the figures of the rotor cannot be computed"
+NO_SPEED = "the speed cannot be computed"
 NO_SWINGS = "the figures of the swings cannot be computed"
 _NOT_COMPUTABLE = (ValueError, ArithmeticError)
 """Errors of figures; SignalError and numpy's LinAlgError are among them."""
 
 
 def rotor_and_swings_of(
-    recording: Recording, accepted: Accepted | None, diagnosis: Diagnosis
+    recording: Recording,
+    accepted: Accepted | None,
+    diagnosis: Diagnosis,
+    speed: SpeedFinding | None = None,
 ) -> tuple[RotorFinding, EccentricityFinding, PulsationFinding]:
     """Tell what a record shows of the rotor, of the air gap and of a load that swings.
 
@@ -36,6 +44,8 @@ def rotor_and_swings_of(
         The record after the quality gate; None where it was refused.
     diagnosis : Diagnosis
         Its diagnosis.
+    speed : SpeedFinding or None, optional
+        Its speed.
 
     Returns
     -------
@@ -57,15 +67,19 @@ def rotor_and_swings_of(
             _unsupported(recording, f"{NO_ROTOR}: {error}"),
             *_nothing_of_swings(f"{NO_SWINGS}: {error}"),
         )
-    rotor = _rotor(recording, recorded, accepted, diagnosis)
+    rotor = _rotor(recording, recorded, accepted, diagnosis, speed)
     return rotor, *_swings(recorded, accepted, diagnosis, rotor)
 
 
 def _rotor(
-    recording: Recording, recorded: Baseband, accepted: Accepted, diagnosis: Diagnosis
+    recording: Recording,
+    recorded: Baseband,
+    accepted: Accepted,
+    diagnosis: Diagnosis,
+    speed: SpeedFinding | None,
 ) -> RotorFinding:
     try:
-        finding = examine_rotor(recorded, accepted, diagnosis)
+        finding = examine_rotor(recorded, accepted, diagnosis, speed)
     except _NOT_COMPUTABLE as error:
         return _unsupported(recording, f"{NO_ROTOR}: {error}")
     impossible = not_finite(finding.as_dict())
@@ -97,6 +111,33 @@ def _swings(
 
 def _nothing_of_swings(reason: str) -> tuple[EccentricityFinding, PulsationFinding]:
     return EccentricityFinding.untold(reason), PulsationFinding.untold(reason)
+
+
+def speed_beside(accepted: Accepted | None, diagnosis: Diagnosis, memory: LineMemory | None) -> SpeedFinding:
+    """Tell the speed of a record; where its figures cannot be computed, a reason says so.
+
+    Parameters
+    ----------
+    accepted : Accepted or None
+        The record after the quality gate; None where it was refused.
+    diagnosis : Diagnosis
+        Its diagnosis.
+    memory : LineMemory or None
+        What earlier records told of the motor's lines.
+
+    Returns
+    -------
+    SpeedFinding
+        The speed.
+    """
+    if accepted is None:
+        return not_seen("the quality gate refused the record")
+    try:
+        finding = speed_of(accepted, diagnosis, memory)
+    except _NOT_COMPUTABLE as error:
+        return not_seen(f"{NO_SPEED}: {error}")
+    impossible = not_finite(finding.as_dict())
+    return finding if impossible is None else not_seen(f"{NO_SPEED}: {impossible} is not finite")
 
 
 def supply_of(

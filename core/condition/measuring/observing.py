@@ -7,8 +7,9 @@ from time import perf_counter
 
 import numpy as np
 
-from core.condition.measuring.beside_stator import rotor_and_swings_of, supply_of
-from core.condition.measuring.measurement import LONGEST_RECORDER, negative_impedance
+from core.condition.measuring.beside_stator import rotor_and_swings_of, speed_beside, supply_of
+from core.condition.measuring.bounds import LONGEST_RECORDER
+from core.condition.measuring.impedance import negative_impedance
 from core.condition.observation import Observation, VoltageChannels
 from core.diagnosis.acceptance import Accepted, accept
 from core.diagnosis.baseline import Baseline
@@ -22,6 +23,8 @@ from core.machines.parameters import Motor
 from core.recordings import Channel, Quantity, Recording
 from core.rotor.finding import RotorFinding
 from core.rotor.swing_findings import EccentricityFinding, PulsationFinding
+from core.speed.finding import SpeedFinding
+from core.speed.memory import LineMemory
 from core.supply.figures import SupplyFigures
 
 PHASE_PER_SPACE_VECTOR = sqrt(2.0 / 3.0)
@@ -47,6 +50,8 @@ class Examined:
         What it tells of the air gap.
     pulsation : PulsationFinding
         What it tells of a load that swings.
+    speed : SpeedFinding
+        The speed of the shaft: seen in the current, or by the model.
     """
 
     diagnosis: Diagnosis
@@ -55,6 +60,7 @@ class Examined:
     supply: SupplyFigures | None
     eccentricity: EccentricityFinding
     pulsation: PulsationFinding
+    speed: SpeedFinding
 
     def as_dict(self) -> dict[str, object]:
         """Return the document that `mcc diagnose --json` prints; its keys are a contract.
@@ -62,13 +68,15 @@ class Examined:
         Returns
         -------
         dict of str to object
-            The document of the diagnosis, with `rotor`, `supply`, `eccentricity` and `pulsation`.
+            The document of the diagnosis, with `rotor`, `supply`, `eccentricity`, `pulsation` and
+            `speed`.
         """
         return self.diagnosis.as_dict() | {
             "rotor": self.rotor.as_dict(),
             "supply": None if self.supply is None else self.supply.as_dict(),
             "eccentricity": self.eccentricity.as_dict(),
             "pulsation": self.pulsation.as_dict(),
+            "speed": self.speed.as_dict(),
         }
 
 
@@ -107,6 +115,7 @@ def examine(
     model: str = DEFAULT_MODEL,
     baseline: Baseline | None = None,
     currents_only: bool = False,
+    lines: LineMemory | None = None,
 ) -> Examined:
     """Diagnose a record, observe the motor's condition in it, and see what it tells of rotor and supply.
 
@@ -127,11 +136,13 @@ def examine(
         The motor's standing asymmetry, for the diagnosis.
     currents_only : bool, default False
         Use no voltages, recorded or not; there is no observation then.
+    lines : LineMemory or None, optional
+        What earlier records told of the lines of the motor's rotor, for its speed; it learns from this one.
 
     Returns
     -------
     Examined
-        Diagnosis, observation, rotor, supply, air gap and swings of the load.
+        Diagnosis, observation, rotor, supply, air gap, swings of the load and speed.
 
     Raises
     ------
@@ -147,7 +158,8 @@ def examine(
     supply, problem = supply_of(recording, motor, acceptance)
     if problem is not None:
         diagnosis = replace(diagnosis, reasons=(*diagnosis.reasons, problem))
-    rotor, eccentricity, pulsation = rotor_and_swings_of(recording, accepted, diagnosis)
+    speed = speed_beside(accepted, diagnosis, lines)
+    rotor, eccentricity, pulsation = rotor_and_swings_of(recording, accepted, diagnosis, speed)
     return Examined(
         diagnosis=diagnosis,
         observation=None if accepted is None or undated else observation_of(recording, accepted),
@@ -155,6 +167,7 @@ def examine(
         supply=supply,
         eccentricity=eccentricity,
         pulsation=pulsation,
+        speed=speed,
     )
 
 
@@ -175,7 +188,7 @@ def observation_of(recording: Recording, accepted: Accepted) -> Observation | No
     """
     terminals, case, record = accepted.terminals, accepted.case, accepted.phasors
     voltages = _voltage_channels(accepted)
-    impedance = negative_impedance(case.motor.parameters, case.frequency_hz)
+    impedance = negative_impedance(case.motor, case.frequency_hz)
     scatter = _scatter(record, impedance)
     if voltages is None or not isfinite(scatter):
         return None

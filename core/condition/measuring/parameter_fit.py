@@ -6,23 +6,15 @@ L_s, and of what the relay's channels have in common, their gain and the offset 
 Records at different loads tell these apart. The sums of a linear least-squares fit are all that is kept.
 """
 
-from math import pi, sqrt
+from math import sqrt
 from typing import Any, Final
 
 import numpy as np
 
 from core.condition.assessment import ParameterError
-from core.condition.observation import Observation
-from core.diagnosis.parameter_check import (
-    SATURATION,
-    TOGETHER,
-    gain_deviation,
-    offset_deviation_s,
-    slopes_of_parameters,
-    slopes_of_sensors,
-)
-from core.machines.current_locus import current_locus
-from core.machines.parameters import Connection, Motor
+from core.condition.measuring.measurement import Measurement
+from core.diagnosis.priors import SATURATION, TOGETHER
+from core.machines.parameters import Motor
 
 UNKNOWNS: Final = 5
 """Offset and gain over their standard deviations, then relative errors of R_s, both leakages and L_s."""
@@ -36,6 +28,7 @@ PARAMETER_FIT: Final = np.dtype(
 )
 """Sums over the records: information matrix and vector, their number, and relative errors of the voltage."""
 
+TINY: Final = 1e-12
 FEWEST: Final = 6
 """Records before anything is told."""
 ALL_OF: Final = 24
@@ -69,35 +62,26 @@ def counts(records: float) -> bool:
     return records < ALL_OF or records % EVERY == 0.0
 
 
-def add_record(fit: Any, observation: Observation, motor: Motor) -> None:
+def add_record(fit: Any, record: Measurement) -> None:
     """Add a record to the sums.
 
     Parameters
     ----------
     fit : record of PARAMETER_FIT
         The sums; they change.
-    observation : Observation
+    record : Measurement
         The record.
-    motor : Motor
-        The motor.
     """
-    plate, machine = motor.nameplate, motor.parameters
-    w = 2.0 * pi * observation.frequency_hz
-    admittance = observation.positive_current_A / observation.positive_voltage_V
-    locus = current_locus(machine, w)
-    distance = locus.distance(admittance) / abs(admittance)
-    gain, offset = slopes_of_sensors(locus, admittance, w)
-    sensors = (offset * offset_deviation_s(motor.sensors), gain * gain_deviation(motor.sensors))
-    parameters = -slopes_of_parameters(machine, locus, admittance, w)
-    row = np.array([*sensors, *parameters])
-    per_line = sqrt(2.0) if plate.connection is Connection.DELTA else sqrt(2.0 / 3.0)
-    flux = plate.rated_frequency_Hz / observation.frequency_hz
-    voltage = abs(abs(observation.positive_voltage_V) * flux / (per_line * plate.rated_voltage_V) - 1.0)
-    variance = DEVIATION**2 + (SATURATION * voltage * parameters[2]) ** 2
+    seen, size = record.circle, abs(record.j1)
+    if seen.outwards == 0.0:
+        return
+    row = np.array(seen.slopes[:UNKNOWNS]) / size
+    by_voltage = abs(seen.slopes[UNKNOWNS]) / size
+    variance = DEVIATION**2 + (SATURATION * by_voltage) ** 2
     fit["information"] += np.outer(row, row) / variance
-    fit["vector"] += row * (distance / variance)
+    fit["vector"] += row * (seen.distance / size / variance)
     fit["records"] += 1.0
-    fit["voltage"] += voltage
+    fit["voltage"] += by_voltage / max(abs(row[UNKNOWNS - 1]), TINY)
 
 
 def parameter_errors(fit: Any, motor: Motor) -> tuple[ParameterError, ...]:

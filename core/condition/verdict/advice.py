@@ -91,6 +91,18 @@ _TASKS = {
         "Plan it within weeks, and avoid repeated starts until then.",
         "A longer record at a higher load tells.",
     ),
+    Kind.ASYMMETRY: _Task(
+        "Check the winding by a surge test and by the resistance of its phases, and the transformers' "
+        "secondaries.",
+        "It can wait for the next planned stop: what is known of faults does not explain it.",
+        "A record at another load tells more.",
+    ),
+    Kind.OTHER_LOAD: _Task(
+        "Check what hangs on the motor's feeder between the relay's transformers and the motor: elements and "
+        "fuses of capacitors, heaters, another motor.",
+        "The motor itself need not stop.",
+        "If something was connected there or taken away, enter that as an event of the motor: `maintenance`.",
+    ),
     Kind.UNCLEAR: _Task(
         "Look first whether somebody worked at the motor, its relay or its supply, and enter that as an "
         "event.",
@@ -113,13 +125,46 @@ _GONE = _Task(
     "If it comes back, the next records show it.",
 )
 
-_TELLING = {
+_BY_PAIR = {
     frozenset((Kind.SHORTED_TURNS, Kind.CONNECTION)): _Task(
         "Check the joints from the contactor to the terminal box first (thermal image, voltage drop of each "
         "phase), then the winding{where} (surge test, resistance of the phases).",
         "Check within days: either gets worse by itself.",
         "A record at another load tells: the drop over a joint grows with the current, that of shorted turns "
         "does not.",
+    ),
+    frozenset((Kind.SHORTED_TURNS, Kind.ASYMMETRY)): _Task(
+        "Check the winding{where}: surge test, resistance of the phases, insulation to earth.",
+        "Plan it for the next stop, and record the motor more often until then.",
+        "A record at another load tells: shorted turns change the forward-turning current too, another "
+        "asymmetry hardly.",
+    ),
+    frozenset((Kind.SHORTED_TURNS, Kind.OTHER_LOAD)): _Task(
+        "Check capacitors and heaters on the motor's feeder first (a clamp meter in each line, the motor at "
+        "rest), then the winding{where}: surge test, resistance of the phases.",
+        "Plan it for the next stop, and record the motor more often until then.",
+        "A record at another load tells: what hangs beside the motor draws the same current at any load.",
+    ),
+    frozenset((Kind.CONNECTION, Kind.ASYMMETRY)): _Task(
+        "Check the joints{where} from the contactor to the terminal box first (thermal image, voltage drop "
+        "of each phase), then the winding (surge test, resistance of the phases).",
+        "Check within days: a joint that heats gets worse by itself.",
+        "A record at another load tells: the drop over a joint grows with the current, that of another "
+        "asymmetry does not.",
+    ),
+    frozenset((Kind.VOLTAGE_CHANNEL, Kind.ASYMMETRY)): _Task(
+        "Check the voltage transformer's secondary{where} and fuses first, then the winding (surge test, "
+        "resistance of the phases).",
+        "It can wait for the next planned stop; record the motor more often until then.",
+        "Compare with the other motors of the bus: an asymmetry of the motor is seen in its currents alone, "
+        "a voltage channel in the voltages.",
+    ),
+    frozenset((Kind.CURRENT_CHANNEL, Kind.ASYMMETRY)): _Task(
+        "Check the current transformer's secondary{where} first, by a clamp meter beside the relay's "
+        "reading, then the winding (surge test, resistance of the phases).",
+        "Check soon, because the relay protects the motor by the same current.",
+        "A record at another load tells: the error of a channel grows with the current, that of another "
+        "asymmetry does not.",
     ),
     frozenset((Kind.SHORTED_TURNS, Kind.VOLTAGE_CHANNEL)): _Task(
         "Check the voltage transformer's secondary and fuses first, then the winding{where} (surge test, "
@@ -192,7 +237,7 @@ def advice(
     task = _TASKS[kind]
     if kind is Kind.UNCLEAR:
         likeliest = frozenset(tuple(candidates)[:2])
-        task = _TELLING.get(likeliest, task) if likeliest else _UNCONFIRMED
+        task = _BY_PAIR.get(likeliest, task) if likeliest else _UNCONFIRMED
     if is_gone:
         task = _GONE
     urgency = task.urgency

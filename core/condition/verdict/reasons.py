@@ -4,12 +4,13 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Final
 
-from core.condition.assessment import PHASES, Assessment, Change, Level, Reference
+from core.condition.assessment import PHASES, Assessment, Change, Level, Phase, Reference
 from core.condition.events import Event
 from core.condition.filter.state import START
-from core.condition.forecast.forecast import Forecast
+from core.condition.forecast.outcome import Forecast
 from core.condition.kinds import Kind
 from core.condition.severity import FEW, Interval, standing_stays_a_fault, stands_out, stays_a_fault
+from core.diagnosis.phase_words import phase_in_words
 from core.time_stamps import SECONDS_END, rfc3339
 from core.time_words import time_ahead
 
@@ -25,6 +26,8 @@ WORDS: Final = {
     Kind.SUPPLY: "the supply",
     Kind.PARAMETERS: "the motor's impedance",
     Kind.ROTOR: "the rotor",
+    Kind.ASYMMETRY: "an asymmetry of unknown cause",
+    Kind.OTHER_LOAD: "a capacitor or another load behind the relay",
     Kind.UNCLEAR: "something else",
 }
 """Each kind as a part of a sentence."""
@@ -89,10 +92,7 @@ def _of_change(change: Change, limit: float) -> Iterator[str]:
     if change.until_ns is not None:
         either = " or ".join(WORDS[kind] for kind in change.named)
         until = _seconds(change.until_ns)
-        yield (
-            f"{either} in phase {level.phase} from {since} to {until}: gone; was it repaired? "
-            "Tell it with a note"
-        )
+        yield (f"{either}{_where(level)} from {since} to {until}: gone; was it repaired? Tell it with a note")
         yield f"their level was {_interval(level)}"
         return
     if not change.named:
@@ -104,21 +104,59 @@ def _of_change(change: Change, limit: float) -> Iterator[str]:
         either = " or ".join(WORDS[kind] for kind in change.named)
         yield f"{either} since {since}: the records cannot tell which"
     elif change.named == (Kind.SHORTED_TURNS,):
-        yield f"shorted turns in phase {level.phase} since {since}: {_interval(level)} more"
+        yield f"shorted turns{_where(level)} since {since}: {_interval(level)} more"
+    elif change.named == (Kind.ASYMMETRY,):
+        yield (
+            f"an asymmetry of unknown cause since {since}: neither shorted turns nor a channel nor a joint "
+            "explains it; a record at another load tells more"
+        )
+    elif change.named == (Kind.OTHER_LOAD,):
+        drawn = "" if change.size is None else f", of {_percent(change.size)} of the rated current"
+        yield (
+            f"a capacitor or another load behind the relay's transformers has changed since {since}{drawn}: "
+            "the current of the positive and of the negative sequence has changed as such a load does, and "
+            "not as shorted turns do"
+        )
     else:
         where = "" if change.channel is None else f" of phase {PHASES[change.channel]}"
         yield (
             f"{WORDS[change.named[0]]}{where} has changed{_by(change)} since {since}; "
             f"probability {_chance(change.probabilities.get(change.named[0], 0.0))}"
         )
+    if not change.named and change.probabilities.get(Kind.OTHER_LOAD, 0.0) >= FEW:
+        yield (
+            "the negative-sequence current of a capacitor or a heater between two lines is like that of "
+            "shorted turns; a record at another load, or the feeder's current while the motor is at rest, "
+            "tells which it is"
+        )
     if len(change.named) != 1 and change.probabilities.get(Kind.SHORTED_TURNS, 0.0) >= FEW:
-        yield f"if it is shorted turns, they are in phase {level.phase}: {_interval(level)}"
+        yield f"if it is shorted turns{_where(level)}: {_interval(level)}"
     if Kind.SHORTED_TURNS in change.named:
         above = level.ci95[0] > limit
         lies = "lies above" if above else "reaches below"
         yield f"the interval {lies} the motor's limit of {_percent(limit)}"
         if not above and stays_a_fault(change, limit):
             yield "it lay above the limit before; shorted turns do not heal, so it stays a fault"
+
+
+def of_slip_rings(assessment: Assessment) -> Iterator[str]:
+    """Return why no phase is told of a motor with slip rings.
+
+    Parameters
+    ----------
+    assessment : Assessment
+        What the records tell.
+
+    Yields
+    ------
+    str
+        The reason.
+    """
+    if assessment.change is not None or assessment.standing_fault:
+        yield (
+            "no phase is named: a rotor with slip rings does not damp the harmonics of a coil, so that they "
+            "change what shorted turns look like"
+        )
 
 
 def _of_forecast(forecast: Forecast) -> Iterator[str]:
@@ -143,7 +181,7 @@ def _of_standing(assessment: Assessment, limit: float) -> Iterator[str]:
         "deviations from what sensors of this class leave"
     )
     if assessment.standing_fault:
-        yield f"{beyond}: shorted turns in phase {standing.phase}, {_interval(standing)}"
+        yield f"{beyond}: shorted turns{_where(standing)}, {_interval(standing)}"
         above = "above" if standing.value > limit else "below"
         yield f"their likeliest level lies {above} the motor's limit of {_percent(limit)}"
         if standing.value <= limit and standing_stays_a_fault(assessment, limit):
@@ -153,15 +191,15 @@ def _of_standing(assessment: Assessment, limit: float) -> Iterator[str]:
         before = reference.declared
         if before is not None:
             yield (
-                f"until then the records showed shorted turns in phase {before.phase}: "
+                f"until then the records showed shorted turns{_in_phase(before.phase)}: "
                 f"{_with_interval(before.level, before.ci95)}"
             )
         if stands_out(replace(assessment, reference=replace(reference, accepted=False)), limit):
-            yield f"{beyond}; shorted turns would be in phase {standing.phase}: {_interval(standing)}"
+            yield f"{beyond}; as shorted turns{_where(standing)}: {_interval(standing)}"
         else:
             yield f"the records since then leave room for shorted turns up to {_percent(standing.ci95[1])}"
     elif stands_out(assessment, limit):
-        yield f"{beyond}; shorted turns would be in phase {standing.phase}: {_interval(standing)}"
+        yield f"{beyond}; as shorted turns{_where(standing)}: {_interval(standing)}"
     else:
         yield (
             "the asymmetry that stands from the first record on is one of sensors of this class; it can hide "
@@ -182,6 +220,20 @@ def _of_reference(reference: Reference) -> Iterator[str]:
             f"the reference holds {reference.records} records; a step of {_percent(reference.detectable)} of "
             "the turns would be seen within ten records in nine of ten cases"
         )
+
+
+def _where(level: Level) -> str:
+    """Return where shorted turns lie, as a part of a sentence; "" where no phase is told."""
+    if level.phases is None:
+        return ""
+    if level.phase is None:
+        return f" in phase {phase_in_words(level.phases)}"
+    axis = "" if level.axis_deg is None else f", in coils of the axis {level.axis_deg:+.0f} degrees"
+    return f"{_in_phase(level.phase)}{axis}"
+
+
+def _in_phase(phase: Phase | None) -> str:
+    return "" if phase is None else f" in phase {phase}"
 
 
 def _interval(level: Level) -> str:

@@ -2,20 +2,26 @@
 
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields, replace
-from math import isnan, sqrt
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 
 from core.error_words import nearest
 from core.machines import plausibility
+from core.machines.deep_bars import DeepBars, LeakageSaturation
+from core.machines.motor_file.deep_bars import deep_bars, leakage_saturation
 from core.machines.motor_file.error import MotorFileError
+from core.machines.motor_file.feeder import KEYS, cable, capacitors, neutral, transformers
 from core.machines.motor_file.heating import start_limits, thermal_element
+from core.machines.motor_file.nameplate import read_nameplate, wound_rotor
 from core.machines.motor_file.table import MotorTable
+from core.machines.motor_file.tables import table_scaling
 from core.machines.motor_file.unit_slips import likely_slip
+from core.machines.motor_file.winding import stator_winding
 from core.machines.parameters import (
+    Cable,
+    Capacitors,
     ChannelNames,
     Limits,
-    MachineKind,
     MachineParameters,
     Motor,
     Nameplate,
@@ -26,8 +32,9 @@ from core.machines.parameters import (
     WoundRotor,
 )
 from core.machines.sensors import SensorClass
+from core.machines.stator_winding import StatorWinding
 from core.machines.typical import tolerances_of, typical_parameters
-from core.quantity_text import plain
+from core.recordings.tables.layout import TableScaling
 
 TABLES = (
     "nameplate",
@@ -39,11 +46,13 @@ TABLES = (
     "transformers",
     "thermal",
     "rotor_circuit",
+    "winding",
+    "deep_bars",
+    "leakage_saturation",
+    "tables",
+    "capacitors",
+    "cable",
 )
-OF_A_WOUND_ROTOR = ("rotor_voltage_V", "rotor_current_A", "rated_speed_rpm")
-"""Keys of the nameplate that a cage does not have."""
-BELONGS_TO_A_WOUND_ROTOR = 'nothing, or kind = "wound-rotor" under [nameplate]'
-
 PARAMETERS = tuple(field.name for field in fields(MachineParameters))
 DEFAULT_SENSORS = SensorClass()
 FAULT_LEVELS = (0.0, 0.2)
@@ -80,6 +89,20 @@ class Plate:
         The rotor's winding; None of a motor with a cage.
     thermal : ThermalElement or None, optional
         Its relay's thermal element.
+    winding : StatorWinding or None, optional
+        How its stator is wound; None where the file does not tell it.
+    deep_bars : DeepBars or None, optional
+        How its rotor changes from a small slip to a great one.
+    leakage_saturation : LeakageSaturation or None, optional
+        How its leakage falls at great currents.
+    tables : TableScaling, optional
+        How tables of samples become amperes and volts.
+    capacitors : Capacitors or None, optional
+        Power-factor capacitors that are measured with it.
+    cable : Cable or None, optional
+        Its cable.
+    neutral : bool, default False
+        Whether its star point is on the neutral.
     """
 
     name: str
@@ -94,6 +117,13 @@ class Plate:
     start_limits: StartLimits = field(default_factory=StartLimits)
     wound_rotor: WoundRotor | None = None
     thermal: ThermalElement | None = None
+    winding: StatorWinding | None = None
+    deep_bars: DeepBars | None = None
+    leakage_saturation: LeakageSaturation | None = None
+    tables: TableScaling = field(default_factory=TableScaling)
+    capacitors: Capacitors | None = None
+    cable: Cable | None = None
+    neutral: bool = False
 
     @property
     def motor(self) -> Motor:
@@ -112,6 +142,13 @@ class Plate:
             self.start_limits,
             self.wound_rotor,
             self.thermal,
+            self.winding,
+            self.deep_bars,
+            self.leakage_saturation,
+            self.tables,
+            self.capacitors,
+            self.cable,
+            self.neutral,
         )
 
 
@@ -164,8 +201,10 @@ def motor_from_table(
 ) -> Motor:
     """Make a motor from the tables of its file.
 
-    [nameplate] must be there; [parameters], [intervals], [channels], [limits], [sensors], [transformers] and
-    [rotor_circuit] are optional. A motor without [parameters] has those that are typical of its rating.
+    [nameplate] must be there; [parameters], [intervals], [channels], [limits], [sensors], [transformers],
+    [thermal], [rotor_circuit], [winding], [deep_bars], [leakage_saturation], [tables], [capacitors], [cable],
+    and the keys ct_position and neutral, are optional.
+    A motor without [parameters] has those that are typical of its rating.
 
     Parameters
     ----------
@@ -261,15 +300,16 @@ def _plate(
     errors: list[MotorFileError],
 ) -> Plate:
     """Return what the tables say. With errors it is good for nothing."""
-    for unknown in sorted(set(table) - set(TABLES)):
+    for unknown in sorted(set(table) - {*TABLES, *KEYS}):
         errors.append(
             MotorFileError(
                 source,
                 unknown,
                 expected="one of the tables "
-                f"{', '.join(f'[{each}]' for each in TABLES)} (docs/reference/motor-file.md)",
+                f"{', '.join(f'[{each}]' for each in TABLES)}, or of the keys {', '.join(KEYS)} "
+                "(docs/reference/motor-file.md)",
                 found="an unknown key",
-                nearest=nearest(unknown, TABLES),
+                nearest=nearest(unknown, (*TABLES, *KEYS)),
             )
         )
     nameplate = MotorTable(table, "nameplate", source, errors)
@@ -279,9 +319,16 @@ def _plate(
     limits = MotorTable(table, "limits", source, errors, optional=True)
     channels = MotorTable(table, "channels", source, errors, optional=True)
     sensors = MotorTable(table, "sensors", source, errors, optional=True)
-    transformers = MotorTable(table, "transformers", source, errors, optional=True)
+    ratios = MotorTable(table, "transformers", source, errors, optional=True)
     thermal = MotorTable(table, "thermal", source, errors, optional=True)
-    rated = _nameplate(nameplate)
+    winding = MotorTable(table, "winding", source, errors, optional=True)
+    bars = MotorTable(table, "deep_bars", source, errors, optional=True)
+    saturation = MotorTable(table, "leakage_saturation", source, errors, optional=True)
+    tables = MotorTable(table, "tables", source, errors, optional=True)
+    bank = MotorTable(table, "capacitors", source, errors, optional=True)
+    line = MotorTable(table, "cable", source, errors, optional=True)
+    rated = read_nameplate(nameplate)
+    has_pole_pairs = not any(error.field == "[nameplate] pole_pairs" for error in errors)
     # The intervals say how far the parameters may be off; the models use the values alone.
     ends = {name: found for name in PARAMETERS if (found := intervals.interval(name)) is not None}
     plate = Plate(
@@ -302,66 +349,25 @@ def _plate(
             )
         ),
         sensors=_sensors(sensors, typical),
-        transformers=Transformers(
-            voltage_ratio=transformers.ratio("voltage_ratio"),
-            current_ratio=transformers.ratio("current_ratio"),
-        ),
+        transformers=transformers(ratios, table, rated.connection, source, errors),
         source=_source(machine, has_intervals=bool(ends)),
         intervals=ends,
         start_limits=start_limits(limits, rated),
-        wound_rotor=_wound_rotor(nameplate, rotor_circuit, rated),
+        wound_rotor=wound_rotor(nameplate, rotor_circuit, rated),
         thermal=thermal_element(thermal, rated),
+        winding=stator_winding(winding, rated.pole_pairs if has_pole_pairs else None),
+        deep_bars=deep_bars(bars),
+        leakage_saturation=leakage_saturation(saturation, rated),
+        tables=table_scaling(tables),
+        capacitors=capacitors(bank, rated),
+        cable=cable(line, rated),
+        neutral=neutral(table, rated.connection, source, errors),
     )
-    optional = (intervals, rotor_circuit, limits, channels, sensors, transformers, thermal)
-    for section in (nameplate, machine, *optional):
+    optional = (intervals, rotor_circuit, limits, channels, sensors, ratios, thermal, winding, tables)
+    for section in (nameplate, machine, *optional, bars, saturation, bank, line):
         if section is not None:
             section.end()
     return plate
-
-
-def _nameplate(table: MotorTable) -> Nameplate:
-    voltage_V = table.number("rated_voltage_V", plausibility.RATED_VOLTAGE_V, unit="V")
-    if isnan(voltage_V):
-        power_W = table.number("rated_power_W", plausibility.RATED_POWER_W, unit="W")
-    else:
-        power = plausibility.plausible_power(voltage_V)
-        power_W = table.number("rated_power_W", (power.least, power.most), str(power))
-    return Nameplate(
-        rated_power_W=power_W,
-        rated_voltage_V=voltage_V,
-        rated_frequency_Hz=table.number("rated_frequency_Hz", plausibility.RATED_FREQUENCY_HZ, unit="Hz"),
-        pole_pairs=table.count("pole_pairs", plausibility.MOST_POLE_PAIRS),
-        connection=table.connection("connection"),
-        rotor_slots=table.optional_count("rotor_slots", plausibility.MOST_ROTOR_SLOTS),
-    )
-
-
-def _wound_rotor(plate: MotorTable, circuit: MotorTable, rated: Nameplate) -> WoundRotor | None:
-    """Return the rotor's winding; None of a cage, to which none of its keys belongs."""
-    if plate.kind("kind") is MachineKind.CAGE:
-        plate.refuse_all(OF_A_WOUND_ROTOR, BELONGS_TO_A_WOUND_ROTOR)
-        circuit.refuse_all(("external_resistance_ohm",), BELONGS_TO_A_WOUND_ROTOR)
-        return None
-    voltage_V = plate.number("rotor_voltage_V", plausibility.ROTOR_VOLTAGE_V, unit="V")
-    least, most = plausibility.ROTOR_POWER
-    base_A = rated.rated_power_W / (sqrt(3.0) * voltage_V)
-    synchronous_rpm = 60.0 * rated.rated_frequency_Hz / rated.pole_pairs
-    slowest, fastest = plausibility.RATED_SPEED
-    rotor = WoundRotor(
-        open_circuit_voltage_V=voltage_V,
-        rated_current_A=plate.number(
-            "rotor_current_A",
-            (least * base_A, most * base_A),
-            f"{least:g} to {most:g} times rated_power_W / (sqrt(3) rotor_voltage_V) = {plain(base_A)} A",
-        ),
-        rated_speed_rpm=plate.optional_number(
-            "rated_speed_rpm", (slowest * synchronous_rpm, fastest * synchronous_rpm), unit="rpm"
-        ),
-    )
-    most_ohm = plausibility.EXTERNAL_RESISTANCE * rotor.standstill_impedance_ohm
-    return replace(
-        rotor, external_resistance_ohm=circuit.span("external_resistance_ohm", most_ohm, "ohm a phase")
-    )
 
 
 def _parameters(table: MotorTable, nameplate: Nameplate) -> MachineParameters:

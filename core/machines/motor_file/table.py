@@ -1,13 +1,17 @@
 """One table of a motor's file: typed values, and errors that name the key. Every error is kept."""
 
 from collections.abc import Mapping
+from enum import StrEnum
 from math import inf, isnan, nan
 from pathlib import Path
+from typing import TypeVar
 
 from core.error_words import nearest, shown
 from core.machines.motor_file.error import MotorFileError
-from core.machines.parameters import Connection, MachineKind, ParametersSource
+from core.machines.parameters import ParametersSource
 from core.quantity_text import plain
+
+Word = TypeVar("Word", bound=StrEnum)
 
 ROUNDING = 1e-6
 """A value may lie so far beyond its ends, relatively: files have seven digits of it."""
@@ -59,6 +63,11 @@ class MotorTable:
             errors.append(MotorFileError(source, f"[{name}]", expected="a table", found=found))
         self.is_there = isinstance(values, Mapping)
         self.is_empty = not self._values
+
+    @property
+    def has_errors(self) -> bool:
+        """Whether a value of the table was refused."""
+        return any(error.field.startswith(f"[{self._name}]") for error in self._errors)
 
     def number(
         self,
@@ -142,6 +151,33 @@ class MotorTable:
         expected = "primary over secondary value such as 60 for 6600:110, or 1 where the values are primary"
         return self.number(key, TRANSFORMER_RATIOS, expected)
 
+    def phase_numbers(self, key: str) -> tuple[float, float, float] | None:
+        """Take one number for all phases, or three.
+
+        Parameters
+        ----------
+        key : str
+            Key of the value.
+
+        Returns
+        -------
+        tuple of float or None
+            The numbers of phases a, b, c; None where the table has none.
+        """
+        value = self._take(key, None)
+        if value is None:
+            return None
+        given: list[object] = value if isinstance(value, list) else [value] * 3
+        numbers = [
+            one
+            for one in given
+            if isinstance(one, int | float) and not isinstance(one, bool) and abs(one) <= LARGEST
+        ]
+        if len(given) != 3 or len(numbers) != 3:
+            self._refuse(key, "a number, or three for phases a, b, c", value)
+            return None
+        return float(numbers[0]), float(numbers[1]), float(numbers[2])
+
     def interval(self, key: str) -> tuple[float, float] | None:
         """Take an interval.
 
@@ -210,45 +246,30 @@ class MotorTable:
         """
         return None if self._take(key, None) is None else self.count(key, most)
 
-    def connection(self, key: str) -> Connection:
-        """Take the connection of the windings.
+    def word(self, key: str, usual: Word, *, required: bool = False) -> Word:
+        """Take one of several words.
 
         Parameters
         ----------
         key : str
             Key of the value.
+        usual : StrEnum
+            Word where the table has none, and in place of one that was refused.
+        required : bool, default False
+            Whether the table must have one.
 
         Returns
         -------
-        Connection
-            The connection, star by default.
+        StrEnum
+            The word.
         """
-        value = self._take(key, Connection.STAR.value)
+        value = self._take(key, None if required else usual.value)
+        words = type(usual)
         try:
-            return Connection(str(value))
+            return words(str(value))
         except ValueError:
-            self._refuse(key, '"star" or "delta"', value)
-            return Connection.STAR
-
-    def kind(self, key: str) -> MachineKind:
-        """Take the kind of machine.
-
-        Parameters
-        ----------
-        key : str
-            Key of the value.
-
-        Returns
-        -------
-        MachineKind
-            The kind, a cage by default.
-        """
-        value = self._take(key, MachineKind.CAGE.value)
-        try:
-            return MachineKind(str(value))
-        except ValueError:
-            self._refuse(key, " or ".join(f'"{kind}"' for kind in MachineKind), value)
-            return MachineKind.CAGE
+            self._refuse(key, " or ".join(f'"{word}"' for word in words), value)
+            return usual
 
     def span(self, key: str, most: float, unit: str) -> tuple[float, float]:
         """Take a number, or the least and the largest that it may be, from zero on.
@@ -290,6 +311,20 @@ class MotorTable:
         for key in keys:
             if (value := self._take(key, None)) is not None:
                 self._refuse(key, expected, value)
+
+    def refuse(self, key: str, expected: str, found: object) -> None:
+        """Refuse a value that was taken, for what another key says.
+
+        Parameters
+        ----------
+        key : str
+            Key of the value.
+        expected : str
+            What was expected, in words.
+        found : object
+            The value.
+        """
+        self._refuse(key, expected, found)
 
     def source(self, key: str, default: ParametersSource) -> ParametersSource:
         """Take where the parameters come from.

@@ -7,17 +7,23 @@ from dataclasses import asdict
 from pathlib import Path
 
 from core.error_words import one_line
+from core.machines.motor_file.deep_bars import change_lines
 from core.machines.motor_file.error import MotorFileError
+from core.machines.motor_file.feeder import feeder_lines
 from core.machines.motor_file.reader import motor_from_table
+from core.machines.motor_file.winding import winding_lines
 from core.machines.parameters import (
     ChannelNames,
+    CurrentPosition,
     Limits,
     MachineKind,
     Motor,
     ParametersSource,
+    Transformers,
     WoundRotor,
 )
 from core.machines.sensors import SensorClass
+from core.recordings.tables.layout import TableScaling
 
 Interval = tuple[float, float]
 
@@ -90,6 +96,7 @@ def motor_text(
     """
     plate = motor.nameplate
     lines = [_comment(line) for line in heading.splitlines()]
+    lines += ["neutral = true", ""] if motor.neutral else []
     lines += [
         "[nameplate]",
         f"rated_power_W = {_number(plate.rated_power_W)}",
@@ -97,7 +104,8 @@ def motor_text(
         f"rated_frequency_Hz = {_number(plate.rated_frequency_Hz)}",
         f"pole_pairs = {plate.pole_pairs}",
         f"connection = {_text(plate.connection.value)}",
-        *([] if plate.rotor_slots is None else [f"rotor_slots = {plate.rotor_slots}"]),
+        *([] if plate.rotor_bars is None else [f"rotor_bars = {plate.rotor_bars}"]),
+        *([] if plate.rated_speed_rpm is None else [f"rated_speed_rpm = {_number(plate.rated_speed_rpm)}"]),
         *_wound_rotor(motor.wound_rotor),
         "",
         "[parameters]",
@@ -116,25 +124,24 @@ def motor_text(
     if motor.sensors != SensorClass():
         lines += ["", "[sensors]"]
         lines += [f"{name} = {_number(span)}" for name, span in asdict(motor.sensors).items()]
-    ratios = {name: ratio for name, ratio in asdict(motor.transformers).items() if ratio is not None}
-    if ratios:
-        lines += ["", "[transformers]"]
-        lines += [f"{name} = {_number(ratio)}" for name, ratio in ratios.items()]
+    lines += _transformers(motor.transformers)
     if motor.thermal is not None:
         settings = {name: value for name, value in asdict(motor.thermal).items() if value is not None}
         lines += ["", "[thermal]", *(f"{name} = {_number(value)}" for name, value in settings.items())]
+    lines += winding_lines(motor.winding)
+    lines += change_lines(motor.deep_bars, motor.leakage_saturation)
+    lines += _tables(motor.tables)
+    lines += feeder_lines(motor)
     return "\n".join(lines) + "\n"
 
 
 def _wound_rotor(rotor: WoundRotor | None) -> list[str]:
     if rotor is None:
         return []
-    speed = [] if rotor.rated_speed_rpm is None else [f"rated_speed_rpm = {_number(rotor.rated_speed_rpm)}"]
     return [
         f"kind = {_text(MachineKind.WOUND_ROTOR.value)}",
         f"rotor_voltage_V = {_number(rotor.open_circuit_voltage_V)}",
         f"rotor_current_A = {_number(rotor.rated_current_A)}",
-        *speed,
     ]
 
 
@@ -153,6 +160,30 @@ def _limits(motor: Motor) -> list[str]:
     known = {name: value for name, value in asdict(motor.start_limits).items() if value is not None}
     lines += [f"{name} = {_number(value)}" for name, value in known.items()]
     return ["", "[limits]", *lines] if lines else []
+
+
+def _tables(scaling: TableScaling) -> list[str]:
+    rate_hz = (
+        [] if scaling.sample_rate_hz is None else [f"sample_rate_Hz = {_number(scaling.sample_rate_hz)}"]
+    )
+    numbers = {
+        key: value
+        for key in ("current_scale", "voltage_scale")
+        if (value := getattr(scaling, key)) is not None
+    }
+    numbers |= {
+        key: value for key in ("current_offset", "voltage_offset") if any(value := getattr(scaling, key))
+    }
+    lines = [f"{key} = [{', '.join(map(_number, value))}]" for key, value in numbers.items()]
+    return ["", "[tables]", *rate_hz, *lines] if rate_hz or lines else []
+
+
+def _transformers(transformers: Transformers) -> list[str]:
+    ratios = {"voltage_ratio": transformers.voltage_ratio, "current_ratio": transformers.current_ratio}
+    lines = [f"{name} = {_number(ratio)}" for name, ratio in ratios.items() if ratio is not None]
+    if transformers.current_position is not CurrentPosition.LINE:
+        lines.append(f"current_position = {_text(transformers.current_position)}")
+    return ["", "[transformers]", *lines] if lines else []
 
 
 def _channels(channels: ChannelNames) -> list[str]:

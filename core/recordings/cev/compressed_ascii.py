@@ -98,7 +98,29 @@ def closed(fields: str) -> bytes:
     return content + b'"' + checksum(content).encode("ascii") + b'"\r\n'
 
 
-def rows(path: Path, content: bytes, start: int, repairs: Repairs) -> Iterator[Row]:
+def is_row_next(content: bytes, start: int, end: int) -> bool:
+    """Return whether the next line that is no prompt has a checksum.
+
+    Parameters
+    ----------
+    content : bytes
+        Contents of the file.
+    start, end : int
+        The part that is looked at.
+
+    Returns
+    -------
+    bool
+        Whether it has; without such a line, False.
+    """
+    for match in _LINE.finditer(content, start, end):
+        line = match[0].strip(b" \t" + STX + ETX)
+        if not _PROMPT.fullmatch(line):
+            return _CLOSED.fullmatch(line) is not None
+    return False
+
+
+def rows(path: Path, content: bytes, start: int, end: int, repairs: Repairs) -> Iterator[Row]:
     """Read the lines of a file; prompts and blank lines are passed over.
 
     A lenient reader believes fields whose checksum is wrong and leaves out lines that have none.
@@ -109,8 +131,8 @@ def rows(path: Path, content: bytes, start: int, repairs: Repairs) -> Iterator[R
         Path of the file.
     content : bytes
         Contents of the file.
-    start : int
-        First byte that is read.
+    start, end : int
+        The part that is read.
     repairs : Repairs
         Collects what was mended; of a strict reader nothing is.
 
@@ -126,7 +148,7 @@ def rows(path: Path, content: bytes, start: int, repairs: Repairs) -> Iterator[R
     """
     number = 1 + _line_ends(content[:start])
     at, prompts = start, 0
-    for match in _LINE.finditer(content, start):
+    for match in _LINE.finditer(content, start, end):
         number += _line_ends(content[at : match.start()])
         at = match.end()
         if at - match.start() > _LONGEST_LINE:

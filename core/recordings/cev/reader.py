@@ -10,7 +10,8 @@ Commands). What is decided here:
 - Values are primary. A unit stands behind the label, "VA(kV)" or "VAkV"; without one, currents are in A and
   voltages in V. `$$$$$$$` and blanks are missing values.
 - A relay word is written at SAM/CYC_D; between its lines the states hold. Positions named "*" carry none.
-- An echoed command before the report and a prompt behind it are no part of it.
+- An echoed command before the report and a prompt behind it are no part of it. Of a capture with several
+  reports one is read, the first unless another is asked for; what stands behind the last is passed over.
 
 A lenient reader believes lines with wrong checksums, takes the samples there are, and says so.
 """
@@ -23,10 +24,10 @@ from pathlib import Path
 
 import numpy as np
 
-from core.recordings.cev.compressed_ascii import Row, checksum, rows
+from core.recordings.cev.compressed_ascii import Row, checksum, is_row_next, rows
 from core.recordings.cev.samples import CevSamples
 from core.recordings.channel_roles import channel_roles
-from core.recordings.code_pages import decode_text
+from core.recordings.code_pages import decode_text, wide_encoding
 from core.recordings.errors import RecordingError, quoted
 from core.recordings.length import check_length
 from core.recordings.repairs import Repairs
@@ -41,7 +42,11 @@ _START = re.compile(rb'"FID"|"MONTH_?"')
 _LONGEST_ECHO = 1000
 _REAL = re.compile(r"[0-9]{1,9}(\.[0-9]{0,12})?", re.ASCII)
 _INTEGER = re.compile(r"[0-9]{1,4}", re.ASCII)
-_SETTINGS = re.compile(rb'\s*(".*",) *"([0-9A-Fa-f]{4})"[\s\x03=>]*', re.S)
+_SETTINGS_BEGIN = re.compile(rb'\s*(?=")')
+_SETTINGS_END = re.compile(rb'", *"([0-9A-Fa-f]{4})"')
+_MOST_ENDS = 3
+"""Places that are tried as the end of the settings; the text of a relay's has none inside."""
+_PROMPTS = b" \t\r\n\x02\x03\x1a=>"
 _NOMINAL = re.compile(r"\b(?:FNOM|NFREQ)\s*:?=\s*(50|60)\b")
 
 
@@ -75,7 +80,9 @@ class _Field:
     text: str
 
 
-def read_cev(path: Path, *, lenient: bool = False, most_values: int | None = None) -> Recording:
+def read_cev(
+    path: Path, *, lenient: bool = False, most_values: int | None = None, report: int | None = None
+) -> Recording:
     """Read the recording of an event report.
 
     Parameters
@@ -87,6 +94,8 @@ def read_cev(path: Path, *, lenient: bool = False, most_values: int | None = Non
     most_values : int or None, optional
         Refuse a longer recording before it is held in memory: values of all channels and of VALUES_BESIDE
         more, which stand for times and states. None for any length.
+    report : int or None, optional
+        Which report of a capture with several, from 1. None for the first, with a warning if there are more.
 
     Returns
     -------
@@ -100,10 +109,12 @@ def read_cev(path: Path, *, lenient: bool = False, most_values: int | None = Non
     OSError
         If a file that exists cannot be read.
     """
-    return read_event_report(path, lenient=lenient, most_values=most_values).recording
+    return read_event_report(path, lenient=lenient, most_values=most_values, report=report).recording
 
 
-def read_event_report(path: Path, *, lenient: bool = False, most_values: int | None = None) -> EventReport:
+def read_event_report(
+    path: Path, *, lenient: bool = False, most_values: int | None = None, report: int | None = None
+) -> EventReport:
     """Read an event report.
 
     Parameters
@@ -115,6 +126,8 @@ def read_event_report(path: Path, *, lenient: bool = False, most_values: int | N
     most_values : int or None, optional
         Refuse a longer recording before it is held in memory: values of all channels and of VALUES_BESIDE
         more, which stand for times and states. None for any length.
+    report : int or None, optional
+        Which report of a capture with several, from 1. None for the first, with a warning if there are more.
 
     Returns
     -------
@@ -129,35 +142,69 @@ def read_event_report(path: Path, *, lenient: bool = False, most_values: int | N
         If a file that exists cannot be read.
     """
     repairs = Repairs(lenient=lenient)
-    content = _content(path)
-    begin = _START.search(content[:_LONGEST_ECHO])
-    if begin is None:
-        raise RecordingError(
-            path, "line 1", expected='"FID" or "MONTH"', found=quoted(content[:60].decode("latin-1"))
-        )
-    lines = rows(path, content, begin.start(), repairs)
+    content = _content(path, repairs)
+    begin, end = _extent(path, content, report, repairs)
+    lines = rows(path, content, begin, end, repairs)
     head, labels = _head(path, lines)
+    rate_hz, announced = _rate_and_count(head, labels)
     samples = CevSamples(labels)
     settings = ""
     for row in lines:
         if row.fields == ("SETTINGS",):
-            settings = _settings(row, content, repairs)
+            settings = _settings(row, content, end, repairs)
             break
         check_length(path, len(samples.channels), samples.count + 1, most_values)
         samples.add(row)
-    recording = _recording(path, head, labels, samples, settings, repairs)
+        if samples.count == announced and not is_row_next(content, row.end, end):
+            _tell_behind(path, content, row.end, end, repairs)
+            break
+    _check_count(path, samples.count, announced, repairs)
+    recording = _recording(path, head, labels, samples, rate_hz, settings, repairs)
     date = {"FID", *_DATE}
     summary = {label: field.text for label, field in head.items() if label not in date}
     return EventReport(recording, recording.device, summary, settings)
 
 
-def _content(path: Path) -> bytes:
+def _extent(path: Path, content: bytes, report: int | None, repairs: Repairs) -> tuple[int, int]:
+    """Return where the wanted report begins and where it ends at the latest."""
+    first = _START.search(content[:_LONGEST_ECHO])
+    if first is None:
+        raise RecordingError(
+            path, "line 1", expected='"FID" or "MONTH"', found=quoted(content[:60].decode("latin-1"))
+        )
+    again = re.compile(rb"(?<=[\r\n\x02])" + re.escape(first[0]))
+    begins = [first.start(), *(match.start() for match in again.finditer(content, first.end()))]
+    if report is None and len(begins) > 1:
+        repairs.warn(f"{path.name}: {len(begins)} event reports: the first is read")
+    wanted = (report or 1) - 1
+    if not 0 <= wanted < len(begins):
+        raise RecordingError(
+            path, "event report", expected=f"a number from 1 to {len(begins)}", found=str(report)
+        )
+    return begins[wanted], [*begins, len(content)][wanted + 1]
+
+
+def _tell_behind(path: Path, content: bytes, start: int, end: int, repairs: Repairs) -> None:
+    """Warn of words behind the last report; before another one, they are its echo."""
+    words = b"" if end < len(content) else content[start:end].strip(_PROMPTS)
+    if words:
+        shown = quoted(words.split(b"\n")[0].decode("latin-1").strip())
+        repairs.warn(f"{path.name}: what stands behind the event report is passed over: {shown}")
+
+
+def _content(path: Path, repairs: Repairs) -> bytes:
     if not path.is_file():
         raise RecordingError(path, "file", expected="a file", found="none at this path")
     size = path.stat().st_size
     if size > MAX_BYTES:
         raise RecordingError(path, "size", expected=f"at most {MAX_BYTES} bytes", found=f"{size} bytes")
-    return path.read_bytes()
+    content = path.read_bytes()
+    encoding = wide_encoding(content)
+    if encoding is None:
+        return content
+    repairs.warn(f"{path.name}: the text is {encoding[:6].upper()}: read as such")
+    text = content.decode(encoding, errors="replace")
+    return text.encode("latin-1", errors="replace")  # the checksums count bytes of one page
 
 
 def _head(path: Path, lines: Iterator[Row]) -> tuple[dict[str, _Field], Row]:
@@ -185,14 +232,10 @@ def _recording(
     head: Mapping[str, _Field],
     labels: Row,
     samples: CevSamples,
+    rate_hz: float,
     settings: str,
     repairs: Repairs,
 ) -> Recording:
-    frequency_hz = _number(head, labels, "FREQ", 1.0, 1000.0)
-    per_cycle = _number(head, labels, "SAM/CYC_A", 1.0, 10_000.0)
-    cycles = _number(head, labels, "NUM_OF_CYC", 1e-3, 1e6)
-    _check_count(path, samples.count, round(per_cycle * cycles), repairs)
-    rate_hz = frequency_hz * per_cycle
     trigger_index = _trigger_index(path, samples, repairs)
     before_trigger_ns = round((trigger_index or 0) / rate_hz * NANOSECONDS_PER_SECOND)
     values = samples.values()
@@ -212,8 +255,17 @@ def _recording(
         device=head["FID"].text.removeprefix("FID=") if "FID" in head else "",
         digitals=samples.digitals(),
         repairs=repairs.notes,
+        warnings=repairs.warnings,
         source=str(path),
     )
+
+
+def _rate_and_count(head: Mapping[str, _Field], labels: Row) -> tuple[float, int]:
+    """Return the sampling rate [Hz] and the number of samples that the summary tells."""
+    frequency_hz = _number(head, labels, "FREQ", 1.0, 1000.0)
+    per_cycle = _number(head, labels, "SAM/CYC_A", 1.0, 10_000.0)
+    cycles = _number(head, labels, "NUM_OF_CYC", 1e-3, 1e6)
+    return frequency_hz * per_cycle, round(per_cycle * cycles)
 
 
 def _check_count(path: Path, found: int, announced: int, repairs: Repairs) -> None:
@@ -279,24 +331,42 @@ def _trigger_time_ns(head: Mapping[str, _Field], labels: Row) -> int:
     return elapsed_s * NANOSECONDS_PER_SECOND + parts["MSEC"] * NANOSECONDS_PER_MILLISECOND
 
 
-def _settings(row: Row, content: bytes, repairs: Repairs) -> str:
+def _settings(row: Row, content: bytes, end: int, repairs: Repairs) -> str:
     """Return the quoted text behind "SETTINGS".
 
-    Its checksum may count the line ends or not, and a transfer may have changed them: each is accepted.
+    Its checksum may count the line ends or not, and a transfer may have changed them: each is accepted. Where
+    words follow, the text ends at the first checksum that is right, else at the last.
     """
-    parts = _SETTINGS.fullmatch(content, row.end)
-    if parts is None:
+    begin = _SETTINGS_BEGIN.match(content, row.end, end)
+    first = row.end if begin is None else begin.end()
+    final: re.Match[bytes] | None = None
+    tried: list[re.Match[bytes]] = []
+    for final in _SETTINGS_END.finditer(content, first + 1, end) if begin else ():
+        if len(tried) < _MOST_ENDS:
+            tried.append(final)
+    if final is None:
         fault = row.refuse("settings", 'a text in quotes and its checksum such as ,"02E1"', "something else")
         repairs.mend(fault, "the settings are left out")
         return ""
-    text = parts[1]
-    lines = text.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    right = (one for one in tried if _is_right(content[first : one.start() + 2], one[1]))
+    last = next(right, final)
+    text = content[first : last.start() + 2]
+    if not _is_right(text, last[1]):
+        fault = row.refuse("settings, checksum", checksum(text), last[1].decode("ascii"))
+        repairs.mend(fault, "the settings are read as they are")
+    _tell_behind(row.path, content, last.end(), end, repairs)
+    return decode_text(_with_plain_ends(text)[1:-2])
+
+
+def _is_right(text: bytes, written: bytes) -> bool:
+    lines = _with_plain_ends(text)
     counted = (
         text,
         lines.replace(b"\n", b""),
         *(lines.replace(b"\n", end) for end in (b"\r\n", b"\n", b"\r")),
     )
-    if parts[2].decode("ascii").upper() not in map(checksum, counted):
-        fault = row.refuse("settings, checksum", checksum(text), parts[2].decode("ascii"))
-        repairs.mend(fault, "the settings are read as they are")
-    return decode_text(lines[1:-2])
+    return written.decode("ascii").upper() in map(checksum, counted)
+
+
+def _with_plain_ends(text: bytes) -> bytes:
+    return re.sub(rb"\r*\n|\r", b"\n", text)

@@ -87,7 +87,7 @@ def decode_ascii(
         block_lines = [line.rstrip(_END).decode("latin-1") for line in wanted[: samples - first]]
         if not block_lines:
             continue
-        block = _numbers(section.path, block_lines, first, analog, states)
+        block = _numbers(section.path, block_lines, first, analog, states, repairs)
         numbers.check(block[:, 0])
         counts = block[:, 2 : 2 + analog]
         if configuration.revision >= 1999:
@@ -98,6 +98,23 @@ def decode_ascii(
         if first == samples:
             break
     return sink
+
+
+def ascii_samples_held(section: DataSection) -> int:
+    """Return the lines of an ASCII data file that are not blank.
+
+    Parameters
+    ----------
+    section : DataSection
+        Place of the data.
+
+    Returns
+    -------
+    int
+        The number.
+    """
+    text = _Text.of(section)
+    return text.lines - text.blank_lines
 
 
 @dataclass(frozen=True, slots=True)
@@ -200,14 +217,20 @@ def _fault(path: Path, lines: int, announced: int) -> RecordingError:
     return RecordingError(path, "size", expected=f"{announced} lines, one a sample", found=f"{lines} lines")
 
 
-def _numbers(path: Path, lines: list[str], first: int, analog: int, states: int) -> NDArray[np.float64]:
+def _numbers(
+    path: Path, lines: list[str], first: int, analog: int, states: int, repairs: Repairs
+) -> NDArray[np.float64]:
     """Fields of some lines as numbers, shape (lines, fields); an empty one is NaN, a value not recorded."""
     columns = 2 + analog + states
-    for number, line in enumerate(lines, first + 1):
-        if line.count(",") != columns - 1:
+    for k, line in enumerate(lines):
+        surplus = line.count(",") + 1 - columns
+        if surplus > 0 and not line.split(",", columns)[-1].strip(", \t"):
+            lines[k] = ",".join(line.split(",")[:columns])
+            repairs.warn(f"{path.name}: lines end in a comma: no field is behind it")
+        elif surplus != 0:
             raise RecordingError(
                 path,
-                f"line {number}",
+                f"line {first + k + 1}",
                 expected=f"{columns} fields: number, time stamp, {analog} analogue and {states} status "
                 "values",
                 found=f"{line.count(',') + 1}: {quoted(line)}",

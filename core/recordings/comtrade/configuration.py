@@ -5,12 +5,20 @@ Clauses are those of C37.111-1999, chapter 5; differences of the other editions 
 """
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from core.recordings.comtrade.dates import date_time, utc_offset_ns
-from core.recordings.comtrade.editions import FIELDS_SINCE_1999, REVISIONS, read_identification
+from core.recordings.comtrade.dates import record_times
+from core.recordings.comtrade.editions import (
+    FIELDS_OF_1991,
+    FIELDS_SINCE_1999,
+    edition_by_layout,
+    read_identification,
+)
 from core.recordings.comtrade.lines import Line, Lines
+from core.recordings.comtrade.rates import rate_lines, settled_rates
+from core.recordings.comtrade.time_codes import utc_offset_ns
 from core.recordings.errors import RecordingError, quoted
 from core.recordings.repairs import Repairs
 
@@ -18,12 +26,11 @@ DATA_FORMATS = ("ASCII", "BINARY", "BINARY32", "FLOAT32")
 
 MAX_CHANNELS = 20_000
 """The standard allows 999 999; no recorder comes near, and a file of so many would take seconds to refuse."""
-MAX_SAMPLES = 9_999_999_999
-MAX_RATES = 999
 MOST_RATIO = 1e12
 MOST_NAMED = 12
 """Constant channels that are named; a recorder may have hundreds of spare inputs."""
 
+_NUMBER = re.compile(r"[-+]?[0-9.]+([eE][-+]?[0-9]+)?", re.ASCII)
 _CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
 
 
@@ -114,8 +121,32 @@ class Configuration:
     data_format: str
     time_stamp_unit_s: float
 
+    @property
+    def layout(self) -> "Layout":
+        """What a sample looks like in the data."""
+        return Layout(len(self.analog), len(self.status_names), self.data_format)
 
-def parse_configuration(path: Path, text: str, repairs: Repairs) -> Configuration:
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """What a sample looks like in the data.
+
+    Parameters
+    ----------
+    analog, status : int
+        Number of analogue and of status channels.
+    data_format : str
+        Format of the data file.
+    """
+
+    analog: int
+    status: int
+    data_format: str
+
+
+def parse_configuration(
+    path: Path, text: str, repairs: Repairs, samples_held: Callable[[Layout], int]
+) -> Configuration:
     """Check and read the text of a configuration file.
 
     A lenient reader takes any revision year for the edition of its time, tells the edition from the layout
@@ -129,6 +160,8 @@ def parse_configuration(path: Path, text: str, repairs: Repairs) -> Configuratio
         Its text.
     repairs : Repairs
         Collects what was mended; of a strict reader nothing is.
+    samples_held : callable
+        Number of samples that the data hold in a layout; called where there are several sampling rates.
 
     Returns
     -------
@@ -144,14 +177,11 @@ def parse_configuration(path: Path, text: str, repairs: Repairs) -> Configuratio
     if control := _CONTROL.search(text):
         raise RecordingError(path, "text", expected="no control characters", found=repr(control.group()))
     lines = Lines(path, text)
-    identification = lines.next("station, device and revision")
-    station, device, edition = read_identification(identification, repairs)
-    analog_count, status_count = _channel_counts(lines.next("channel counts"), len(lines))
-    if len(identification.fields) == 2 and lines.fields_ahead() == FIELDS_SINCE_1999:
-        fault = identification.refuse("revision", f"one of {', '.join(REVISIONS)}", "none")
-        repairs.mend(fault, "the edition is told by the layout")
-        edition = None
-    revision = edition or (1991 if lines.fields_ahead() == 10 else 1999)
+    station, device, edition = read_identification(lines, repairs)
+    analog_count, status_count = _channel_counts(
+        lines.next("channel counts").of(3, repairs=repairs), len(lines)
+    )
+    revision = edition or edition_by_layout(lines.ahead())
     analog = tuple(
         _analog_channel(lines.next(f"analogue channel {k}"), k, revision, repairs)
         for k in range(1, analog_count + 1)
@@ -160,15 +190,18 @@ def parse_configuration(path: Path, text: str, repairs: Repairs) -> Configuratio
         _status_channel(lines.next(f"status channel {k}"), k, revision, repairs)
         for k in range(1, status_count + 1)
     )
-    nominal_frequency_hz = _nominal_frequency(lines.next("line frequency"))
-    rates, sample_count = _rates(lines, repairs)
-    start = date_time(lines.next("time of the first sample"), revision, repairs)
-    trigger = date_time(lines.next("time of the trigger"), revision, repairs)
-    data_format = _data_format(lines.next("data format"))
-    time_multiplier = 1.0 if revision == 1991 else _time_multiplier(lines, repairs, needed=not rates)
-    if edition is None and revision == 1999 and lines.fields_ahead():
+    nominal_frequency_hz = _nominal_frequency(lines.next("line frequency").of(1, repairs=repairs))
+    written_rates = rate_lines(lines, repairs)
+    start, trigger = record_times(
+        lines.next("time of the first sample"), lines.next("time of the trigger"), revision, repairs
+    )
+    data_format = _data_format(lines.next("data format").of(1, repairs=repairs))
+    time_multiplier = (
+        1.0 if revision == 1991 else _time_multiplier(lines, repairs, needed=written_rates.announced == 0)
+    )
+    if edition is None and revision == 1999 and lines.ahead():
         revision = 2013  # nothing else has lines behind the time multiplier
-    has_time_code = revision >= 2013 and lines.fields_ahead() > 0
+    has_time_code = revision >= 2013 and bool(lines.ahead())
     ahead_ns = utc_offset_ns(lines, repairs) if revision >= 2013 else 0
     for line in lines.remaining():
         if any(line.fields):
@@ -176,6 +209,9 @@ def parse_configuration(path: Path, text: str, repairs: Repairs) -> Configuratio
     # 2013, 7.4.9: nanoseconds if the file's times are written to more than six decimals.
     time_base_s = 1e-9 if max(start.decimals, trigger.decimals) > 6 else 1e-6
     _tell_constants(path, analog, repairs)
+    rates, sample_count = settled_rates(
+        written_rates, lambda: samples_held(Layout(analog_count, status_count, data_format)), repairs
+    )
     return Configuration(
         revision=revision,
         station=station,
@@ -194,7 +230,6 @@ def parse_configuration(path: Path, text: str, repairs: Repairs) -> Configuratio
 
 
 def _channel_counts(line: Line, line_count: int) -> tuple[int, int]:
-    line.has_fields(3)
     total = line.integer(0, "total", 1, MAX_CHANNELS)
     counts = []
     for index, letter, field in ((1, "A", "analogue channels"), (2, "D", "status channels")):
@@ -220,8 +255,10 @@ def _check_index(line: Line, number: int, repairs: Repairs) -> None:
 
 
 def _analog_channel(line: Line, number: int, revision: int, repairs: Repairs) -> AnalogChannel:
-    line.has_fields(10 if revision == 1991 else FIELDS_SINCE_1999)
+    line = line.of(FIELDS_OF_1991 if revision == 1991 else FIELDS_SINCE_1999, repairs=repairs, name=1)
     _check_index(line, number, repairs)
+    if "," in line.fields[1]:
+        _check_behind_commas(line, revision)
     gain, offset = line.real(5, "multiplier a"), line.real(6, "offset b")
     if gain == 0:
         return _constant(line, revision, offset)
@@ -240,6 +277,17 @@ def _analog_channel(line: Line, number: int, revision: int, repairs: Repairs) ->
         to_primary=1.0 if revision == 1991 else _to_primary(line),
         ratio=None if revision == 1991 else _written_ratio(line),
     )
+
+
+def _check_behind_commas(line: Line, revision: int) -> None:
+    """Refuse a line whose further field is no part of the name: the numbers would be in other places."""
+    for index, field in enumerate(("multiplier a", "offset b", "skew", "minimum", "maximum"), 5):
+        if line.fields[index] or field != "skew":
+            line.real(index, field)
+    if _NUMBER.fullmatch(line.fields[4]):
+        raise line.refuse("unit", "no number", quoted(line.fields[4]))
+    if revision >= 1999:
+        _to_primary(line)
 
 
 def _constant(line: Line, revision: int, value: float) -> AnalogChannel:
@@ -300,7 +348,7 @@ def _written_ratio(line: Line) -> float | None:
 
 def _status_channel(line: Line, number: int, revision: int, repairs: Repairs) -> str:
     try:
-        line.has_fields(3 if revision == 1991 else 5)
+        line = line.of(3 if revision == 1991 else 5, repairs=repairs, name=1)
         if line.fields[-1] not in ("0", "1", ""):
             raise line.refuse("normal state", "0 or 1", quoted(line.fields[-1]))
     except RecordingError as fault:
@@ -311,46 +359,9 @@ def _status_channel(line: Line, number: int, revision: int, repairs: Repairs) ->
 
 def _nominal_frequency(line: Line) -> float | None:
     """Line frequency [Hz]; None where the field is empty or 0, as it is not critical (5.3.5)."""
-    line.has_fields(1)
     if line.fields[0] == "" or line.real(0, "") == 0:
         return None
     return line.positive(0, "", 1e-3, 1e6)
-
-
-def _rates(lines: Lines, repairs: Repairs) -> tuple[tuple[tuple[float, int], ...], int]:
-    """Rates with their last samples, and the number of samples (5.3.6).
-
-    A lenient reader leaves out rates at which no sample was taken.
-    """
-    line = lines.next("number of sampling rates")
-    line.has_fields(1)
-    count = line.integer(0, "", 0, MAX_RATES)
-    rates: list[tuple[float, int]] = []
-    for k in range(1, max(count, 1) + 1):
-        line = lines.next(
-            "sampling rate and last sample" if count < 2 else f"sampling rate {k} and last sample"
-        )
-        line.has_fields(2)
-        try:
-            samples = line.integer(1, "last sample", rates[-1][1] + 1 if rates else 1, MAX_SAMPLES)
-        except RecordingError as fault:
-            if count < 2 or line.integer(1, "last sample", 0, MAX_SAMPLES) not in (
-                0,
-                rates[-1][1] if rates else 0,
-            ):
-                raise
-            repairs.mend(fault, "left out, as no sample was taken at this rate")
-            continue
-        if count == 0:
-            if line.real(0, "sampling rate [Hz]") != 0:
-                raise line.refuse(
-                    "sampling rate [Hz]", "0, as the file announces 0 rates", quoted(line.fields[0])
-                )
-            return (), samples
-        rates.append((line.positive(0, "sampling rate [Hz]", 1e-3, 1e9), samples))
-    if not rates:
-        raise line.refuse("last sample", "at least one sample at one of the rates", "none")
-    return tuple(rates), rates[-1][1]
 
 
 def _time_multiplier(lines: Lines, repairs: Repairs, *, needed: bool) -> float:
@@ -362,12 +373,10 @@ def _time_multiplier(lines: Lines, repairs: Repairs, *, needed: bool) -> float:
             raise
         repairs.mend(fault, "taken as 1")
         return 1.0
-    line.has_fields(1)
-    return line.positive(0, "", 1e-9, 1e9)
+    return line.of(1, repairs=repairs).positive(0, "", 1e-9, 1e9)
 
 
 def _data_format(line: Line) -> str:
-    line.has_fields(1)
     data_format = line.fields[0].upper()
     if data_format not in DATA_FORMATS:
         raise line.refuse("", f"one of {', '.join(DATA_FORMATS)}", quoted(line.fields[0]))

@@ -11,7 +11,7 @@ from typing import Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from core.recordings.comtrade.configuration import Configuration
+from core.recordings.comtrade.configuration import Configuration, Layout
 from core.recordings.data_section import DataSection
 from core.recordings.errors import RecordingError
 from core.recordings.repairs import Repairs
@@ -19,6 +19,8 @@ from core.recordings.repairs import Repairs
 NO_TIME_STAMP = 0xFFFFFFFF
 
 _PADDING = b"\x1a"
+_LINE_ENDS = b"\x1a\r\n"
+"""What transfers and editors leave behind the last sample."""
 _BLOCK_BYTES = 1 << 18
 """Read and converted at a time: enough to be fast, little enough to stay in the processor's cache."""
 
@@ -206,7 +208,8 @@ def decode_binary(
     OSError
         If the file cannot be read.
     """
-    row = _row(configuration)
+    row = _row(configuration.layout)
+    unmarked = _channels_without_mark(configuration)
     samples = _sample_count(section, configuration, row, repairs)
     states = -(-len(configuration.status_names) // 8)
     sink = sink_of(configuration, samples)
@@ -226,21 +229,24 @@ def decode_binary(
             numbers.check(block["number"])
             with np.errstate(invalid="ignore"):  # of a signalling NaN
                 counts = block["analog"].astype(np.float64)
-            counts[block["analog"] == _missing(configuration)] = np.nan
+            missing = block["analog"] == _missing(configuration)
+            if unmarked:
+                missing[:, unmarked] = False
+            counts[missing] = np.nan
             stamps = block["stamp"].astype(np.float64)
             stamps[block["stamp"] == NO_TIME_STAMP] = np.nan
             sink.put(first, counts, stamps, block["status"][:, :states])
     return sink
 
 
-def _row(configuration: Configuration) -> np.dtype[np.void]:
-    analog_type = {"BINARY": "<i2", "BINARY32": "<i4", "FLOAT32": "<f4"}[configuration.data_format]
-    status_bytes = 2 * -(-len(configuration.status_names) // 16)
+def _row(layout: Layout) -> np.dtype[np.void]:
+    analog_type = {"BINARY": "<i2", "BINARY32": "<i4", "FLOAT32": "<f4"}[layout.data_format]
+    status_bytes = 2 * -(-layout.status // 16)
     return np.dtype(
         [
             ("number", "<u4"),
             ("stamp", "<u4"),
-            ("analog", analog_type, (len(configuration.analog),)),
+            ("analog", analog_type, (layout.analog,)),
             ("status", "u1", (status_bytes,)),
         ]
     )
@@ -253,6 +259,31 @@ def _missing(configuration: Configuration) -> float:
     return -0x80000000 if configuration.data_format == "BINARY32" else float(np.finfo(np.float32).min)
 
 
+def _channels_without_mark(configuration: Configuration) -> list[int]:
+    """Channels of 1991 whose limits have a sign: 0xFFFF is the count -1 there, and nothing marks a gap."""
+    if configuration.revision != 1991 or configuration.data_format != "BINARY":
+        return []
+    return [k for k, channel in enumerate(configuration.analog) if channel.minimum < 0]
+
+
+def binary_samples_held(section: DataSection, layout: Layout) -> int:
+    """Return the whole samples that a binary data file has room for.
+
+    Parameters
+    ----------
+    section : DataSection
+        Place of the data.
+    layout : Layout
+        What a sample looks like.
+
+    Returns
+    -------
+    int
+        The number.
+    """
+    return section.size // _row(layout).itemsize
+
+
 def _sample_count(
     section: DataSection, configuration: Configuration, row: np.dtype[np.void], repairs: Repairs
 ) -> int:
@@ -260,6 +291,7 @@ def _sample_count(
     expected = announced * row.itemsize
     if section.size >= expected and section.is_padding_after(expected, _PADDING):
         return announced
+    surplus = section.size - expected
     fault = RecordingError(
         section.path,
         "size",
@@ -267,6 +299,9 @@ def _sample_count(
         f"{len(configuration.analog)} analogue and {len(configuration.status_names)} status channels",
         found=f"{section.size} bytes",
     )
+    if surplus > 0 and section.is_padding_after(expected, _LINE_ENDS):
+        repairs.warn(f"{fault}: the {surplus} bytes of line ends behind the last sample are passed over")
+        return announced
     whole = min(announced, section.size // row.itemsize)
     if whole == 0:
         raise fault

@@ -20,7 +20,7 @@ MOST_SAMPLES = 2_000_000
 """Their times are held in memory."""
 
 
-def read_comtrade_envelope(path: Path, intervals_of: IntervalsOf) -> Envelope:
+def read_comtrade_envelope(path: Path, intervals_of: IntervalsOf, *, lenient: bool = False) -> Envelope:
     """Read the envelope of a COMTRADE record.
 
     Channels that were sampled one after another (skew) stay so: that is less than a sample, where an interval
@@ -32,6 +32,8 @@ def read_comtrade_envelope(path: Path, intervals_of: IntervalsOf) -> Envelope:
         Configuration file (.cfg) or combined file (.cff).
     intervals_of : callable
         Number of intervals for a number of channels and a number of samples.
+    lenient : bool, default False
+        Mend what can be mended without guessing at values.
 
     Returns
     -------
@@ -45,7 +47,7 @@ def read_comtrade_envelope(path: Path, intervals_of: IntervalsOf) -> Envelope:
     OSError
         If a file that exists cannot be read.
     """
-    repairs = Repairs(lenient=False)
+    repairs = Repairs(lenient=lenient)
     opened = open_combined if path.suffix.casefold() == ".cff" else open_record
     configuration, data = opened(path, repairs)
     check_length(path, 0, configuration.sample_count, VALUES_BESIDE * MOST_SAMPLES)

@@ -1,12 +1,14 @@
 """The files of a COMTRADE record: which they are, how large they may be, and who reads their samples."""
 
+from functools import cache
 from pathlib import Path
 
 from core.recordings.code_pages import decode_text
-from core.recordings.comtrade.ascii_samples import decode_ascii
+from core.recordings.comtrade.ascii_samples import ascii_samples_held, decode_ascii
 from core.recordings.comtrade.combined import split_combined
-from core.recordings.comtrade.configuration import Configuration, parse_configuration
-from core.recordings.comtrade.data import Sink, SinkOf, decode_binary
+from core.recordings.comtrade.configuration import Configuration, Layout, parse_configuration
+from core.recordings.comtrade.data import Sink, SinkOf, binary_samples_held, decode_binary
+from core.recordings.comtrade.wide_text import ascii_text, warn_of_wide
 from core.recordings.data_section import DataSection
 from core.recordings.errors import RecordingError
 from core.recordings.repairs import Repairs
@@ -40,10 +42,19 @@ def open_record(path: Path, repairs: Repairs) -> tuple[Configuration, DataSectio
         If a file that exists cannot be read.
     """
     _check_file(path, MAX_CONFIGURATION_BYTES)
-    configuration = parse_configuration(path, decode_text(path.read_bytes()), repairs)
-    data_path = _data_file(path)
-    size = _check_file(data_path, MAX_DATA_BYTES)
-    return configuration, DataSection(data_path, 0, size)
+    content = path.read_bytes()
+    warn_of_wide(path, content, repairs)
+
+    @cache
+    def data_of(data_format: str) -> DataSection:
+        data_path = _data_file(path)
+        data = DataSection(data_path, 0, _check_file(data_path, MAX_DATA_BYTES))
+        return ascii_text(data, repairs) if data_format == "ASCII" else data
+
+    configuration = parse_configuration(
+        path, decode_text(content), repairs, lambda layout: _samples_held(data_of(layout.data_format), layout)
+    )
+    return configuration, data_of(configuration.data_format)
 
 
 def open_combined(path: Path, repairs: Repairs) -> tuple[Configuration, DataSection]:
@@ -79,7 +90,9 @@ def open_combined(path: Path, repairs: Repairs) -> tuple[Configuration, DataSect
             expected=f"at most {MAX_CONFIGURATION_BYTES} bytes",
             found=f"{len(cfg)} bytes",
         )
-    configuration = parse_configuration(path, decode_text(cfg), repairs)
+    configuration = parse_configuration(
+        path, decode_text(cfg), repairs, lambda layout: _samples_held(data, layout)
+    )
     if data_format != configuration.data_format:
         raise RecordingError(
             path, "DAT section", expected=f"format {configuration.data_format}", found=repr(data_format)
@@ -115,6 +128,10 @@ def decode(data: DataSection, configuration: Configuration, repairs: Repairs, si
     """
     decoder = decode_ascii if configuration.data_format == "ASCII" else decode_binary
     return decoder(data, configuration, repairs, sink_of)
+
+
+def _samples_held(data: DataSection, layout: Layout) -> int:
+    return ascii_samples_held(data) if layout.data_format == "ASCII" else binary_samples_held(data, layout)
 
 
 def _check_file(path: Path, limit: int) -> int:

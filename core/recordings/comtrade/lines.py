@@ -1,14 +1,18 @@
 """Lines and fields of a COMTRADE configuration file, each with its place for messages."""
 
+import csv
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isfinite
 from pathlib import Path
 
 from core.recordings.errors import RecordingError, quoted
+from core.recordings.repairs import Repairs
 
 MAX_LINE = 10_000
+MOST_COMMAS = 4
+"""In a name; a line with more fields is of another kind."""
 
 _INTEGER = re.compile(r"[+-]?[0-9]{1,10}", re.ASCII)
 _REAL = re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]{1,4})?", re.ASCII)
@@ -28,12 +32,15 @@ class Line:
         What the line is about.
     fields : tuple of str
         Its fields.
+    text : str
+        The line as written.
     """
 
     path: Path
     number: int
     what: str
     fields: tuple[str, ...]
+    text: str
 
     def refuse(self, field: str, expected: str, found: str) -> RecordingError:
         """Return the error for a field of this line, to be raised or mended.
@@ -55,24 +62,83 @@ class Line:
         where = f"line {self.number}, {self.what}" + (f", {field}" if field else "")
         return RecordingError(self.path, where, expected=expected, found=found)
 
-    def has_fields(self, *counts: int) -> None:
-        """Check the number of fields.
+    def warned(self, sentence: str) -> str:
+        """Return a warning of this line.
 
         Parameters
         ----------
-        *counts : int
-            Numbers that are allowed.
+        sentence : str
+            What was found, and how it is read.
+
+        Returns
+        -------
+        str
+            The warning, with file and line.
+        """
+        return f"{self.path.name}: line {self.number}, {self.what}: {sentence}"
+
+    def of(self, count: int, *, repairs: Repairs, name: int | None = None) -> "Line":
+        """Return the line in as many fields as it must have.
+
+        Quotes around fields and commas behind the last one are taken off. Where the line holds a name,
+        further commas are the name's: the fields behind it are counted from the right end. A warning tells
+        of each.
+
+        Parameters
+        ----------
+        count : int
+            Number of fields.
+        repairs : Repairs
+            Collects what departs from the standard.
+        name : int or None, optional
+            Position of the name, from 0; None for a line without one.
+
+        Returns
+        -------
+        Line
+            The line.
 
         Raises
         ------
         RecordingError
-            If it is none of `counts`.
+            If it has another number of fields.
         """
-        if len(self.fields) not in counts:
-            expected = " or ".join(str(count) for count in counts)
-            raise self.refuse(
-                "", f"{expected} field{'' if counts == (1,) else 's'}", f"{len(self.fields)}: {self.quoted()}"
-            )
+        if len(self.fields) == count and '"' not in self.text:
+            return self
+        fault = self.refuse("", f"{count} field{'s' * (count != 1)}", f"{len(self.fields)}: {self.quoted()}")
+        if any(field.startswith('"') and field != '"' for field in self.fields):
+            unquoted = self._unquoted()
+            if len(unquoted) == count:
+                repairs.warn(self.warned(f"quotes are taken off: {self.quoted()}"))
+                return replace(self, fields=unquoted)
+        fields = self.fields
+        while len(fields) > count and not fields[-1]:
+            fields = fields[:-1]
+        if len(fields) == count:
+            if fields != self.fields:
+                repairs.warn(f"{fault}: the commas at the end are passed over")
+            return replace(self, fields=fields)
+        if name is None or not count < len(fields) <= count + MOST_COMMAS:
+            raise fault
+        behind = name + len(fields) - count + 1
+        named = ",".join(self.fields_as_written[name:behind]).strip()
+        repairs.warn(f"{fault}: read as a name with commas, {quoted(named)}")
+        return replace(self, fields=(*fields[:name], named, *fields[behind:]))
+
+    def _unquoted(self) -> tuple[str, ...]:
+        """Fields where those in quotes may have commas inside."""
+        (fields,) = csv.reader([",".join(self.fields_as_written)], skipinitialspace=True)
+        return tuple(field.strip() for field in fields)
+
+    @property
+    def fields_as_written(self) -> tuple[str, ...]:
+        """The fields with their blanks."""
+        return tuple(self.text.split(","))
+
+    @property
+    def joined(self) -> str:
+        """The line without blanks around its fields."""
+        return ",".join(self.fields)
 
     def quoted(self) -> str:
         """Return the line as a message shows it.
@@ -82,7 +148,7 @@ class Line:
         str
             Short text without control characters.
         """
-        return quoted(",".join(self.fields))
+        return quoted(self.joined)
 
     def integer(self, index: int, field: str, at_least: int, at_most: int) -> int:
         """Return an integer within limits.
@@ -184,7 +250,8 @@ class Lines:
 
     def __init__(self, path: Path, text: str) -> None:
         # Not str.splitlines: in Latin-1 it would also split at 0x85, a letter of other code pages.
-        self._lines = re.split(r"\r\n|\n|\r", text)
+        # A line end that was made one of Windows twice has two carriage returns.
+        self._lines = re.split(r"\r*\n|\r", text)
         self._path = path
         self._next = 0
 
@@ -219,17 +286,25 @@ class Lines:
                 expected=f"at most {MAX_LINE} characters",
                 found=str(len(text)),
             )
-        return Line(self._path, self._next, what, tuple(field.strip() for field in text.split(",")))
+        return Line(self._path, self._next, what, tuple(field.strip() for field in text.split(",")), text)
 
-    def fields_ahead(self) -> int:
-        """Return the number of fields of the next line.
+    def ahead(self, lines: int = 0) -> tuple[str, ...]:
+        """Return the fields of a line that is not read yet.
+
+        Parameters
+        ----------
+        lines : int, default 0
+            Lines between the next one and this.
 
         Returns
         -------
-        int
-            The number; 0 where the file has ended.
+        tuple of str
+            The fields; none where the file has ended.
         """
-        return self._lines[self._next].count(",") + 1 if self._next < len(self._lines) else 0
+        at = self._next + lines
+        if at >= len(self._lines):
+            return ()
+        return tuple(field.strip() for field in self._lines[at][:MAX_LINE].split(","))
 
     def remaining(self) -> Iterator[Line]:
         """Return the lines not read yet.

@@ -3,6 +3,8 @@
 Only differences of time stamps count: recorders start them anywhere. Where rates are given, stamps are not
 critical (C37.111-1999, 6.4): some or all may be missing, and a recorder that leaves them all 0 has none. But
 a step forward in them is a gap in the samples, and is kept; steps back, or another rate, contradict the file.
+Beside a gap, a step back tells that the recorder began again: what is behind it is set apart, by one period
+more, so that nothing is interpolated across it.
 """
 
 from dataclasses import dataclass
@@ -93,7 +95,11 @@ def time_base(
         instants = _with_gaps(path, stamps, nominal, configuration.time_stamp_unit_s, span)
         _tell_turns(path, stamps, span, repairs)
     except RecordingError as fault:
-        repairs.mend(fault, "the time stamps are ignored")
+        instants = _begun_again(stamps, nominal, configuration.time_stamp_unit_s)
+        if instants is None:
+            repairs.mend(fault, "the time stamps are ignored")
+        else:
+            repairs.warn(f"{fault}: the gaps are kept; what is behind a step back is set apart")
     if instants is None and len(configuration.rates) > 1:
         instants = nominal.times(np.arange(stamps.size))
     return TimeBase(configuration.rates[0][0], instants)
@@ -223,6 +229,35 @@ def _with_gaps(
         last, late_s = int(present[-1]), float(late[-1]) if late.size else late_s
     if first_jump and 2 * jumps >= steps:  # no gaps, but another rate
         raise first_jump
+    return instants
+
+
+def _begun_again(stamps: NDArray[np.float64], nominal: _Nominal, unit_s: float) -> NDArray[np.float64] | None:
+    """Return times of a recorder that stepped back beside gaps; None where that is not what the stamps show.
+
+    Stamps that come back to where they were before are wrong for a while, and tell nothing.
+    """
+    if not np.isfinite(stamps).all():
+        return None
+    samples = np.arange(stamps.size)
+    expected = nominal.times(samples)
+    deviation = (stamps - stamps[0]) * unit_s - expected
+    step, period = np.diff(deviation), nominal.period(samples)[1:]
+    most = 0.5 * period + unit_s
+    jump = np.abs(step) > most
+    back = jump & (step < 0)
+    levels = np.sort(np.concatenate([[0.0], np.cumsum(step[jump])]))
+    drift = np.abs(deviation[1:] - np.cumsum(np.where(jump, step, 0.0)))
+    if (
+        not back.any()
+        or (back == jump).all()
+        or 2 * np.count_nonzero(jump) >= step.size
+        or (np.diff(levels) <= period.max()).any()
+        or (drift > most + RATE_TOLERANCE * expected[1:]).any()
+    ):
+        return None
+    later = np.cumsum(np.where(back, period, np.where(jump, step, 0.0)))
+    instants: NDArray[np.float64] = expected + np.concatenate([[0.0], later])
     return instants
 
 

@@ -24,6 +24,8 @@ class Caller:
     """Who asks, and what they may do: no more than their roles, and less with a token of a narrow scope.
 
     session: the digest of the session's secret; None for those who use none. token: the one that they use.
+    password_set_by: who else knows their password, which they are to change before they do anything.
+    may_make_tokens: whether they have shown the second factor, where they need one.
     """
 
     actor: Actor
@@ -31,6 +33,8 @@ class Caller:
     way: Way
     session: str | None = None
     token: ApiToken | None = None
+    password_set_by: str | None = None
+    may_make_tokens: bool = True
 
     def demand(self, permission: Permission, what: str = "do this") -> None:
         """Raise ProblemError (403) where the caller may not."""
@@ -41,6 +45,12 @@ class Caller:
 def forbidden(caller: Caller, permission: Permission, what: str = "do this") -> ProblemError:
     """Return the answer to a caller who may not do something."""
     name = caller.actor.name
+    if caller.password_set_by is not None:
+        return ProblemError(
+            HTTPStatus.FORBIDDEN,
+            f"{name} may not {what} yet: {caller.password_set_by} set this password and knows it; change it "
+            "first (mcc password, or the page Account)",
+        )
     if caller.token is not None and permission in permissions_of(caller.actor.roles):
         scope = ", ".join(sorted(caller.token.scope or ()))
         return ProblemError(
@@ -48,6 +58,12 @@ def forbidden(caller: Caller, permission: Permission, what: str = "do this") -> 
             f"the token {caller.token.label!r} of {name} may not {what}: it needs the permission "
             f"{permission.value!r}, and the scope of the token is {scope}: use a token with "
             f"{permission.value!r} in its scope (mcc token add LABEL --scope {permission.value}), or log in",
+        )
+    if caller.session is not None and permission in permissions_of(caller.actor.roles):
+        return ProblemError(
+            HTTPStatus.FORBIDDEN,
+            f"{name} may not {what} yet: a role of theirs needs a second factor; set it up first (mcc "
+            "second-factor set-up, or the page Account)",
         )
     roles = ", ".join(roles_with(permission))
     return ProblemError(

@@ -1,5 +1,6 @@
 """Where a request comes from: its connection, or what a proxy of the settings says of it."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from ipaddress import IPv4Address, IPv6Address, ip_address
 
@@ -8,10 +9,10 @@ from starlette.types import Scope
 
 from service.configuration.access import ProxySettings
 
+Address = IPv4Address | IPv6Address
+
 FORWARDING = ("forwarded", "x-forwarded-for", "x-forwarded-host", "x-forwarded-proto", "x-real-ip", "via")
 """A request with one of these has come through a proxy, whose machine is not that of who asks."""
-
-IPV6_OF_A_CUSTOMER = 64
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,12 +31,10 @@ def client_address(scope: Scope, proxy: ProxySettings | None) -> ClientAddress:
     peer = _address(scope["client"][0]) if scope.get("client") else None
     encrypted = scope.get("scheme") == "https"
     if peer is not None and proxy is not None and _is_of(peer, proxy):
-        hops = [_address(hop.strip()) for hop in ",".join(headers.getlist("x-forwarded-for")).split(",")]
-        others = [hop for hop in hops if hop is not None and not _is_of(hop, proxy)]
         said = headers.getlist("x-forwarded-proto")
         encrypted = encrypted or (len(said) == 1 and said[0].strip().lower() == "https")
         return ClientAddress(
-            str(others[-1] if others else peer),
+            str(_farthest_known(peer, ",".join(headers.getlist("x-forwarded-for")).split(","), proxy)),
             is_local=False,
             is_named_proxy=True,
             is_encrypted=encrypted,
@@ -49,15 +48,30 @@ def client_address(scope: Scope, proxy: ProxySettings | None) -> ClientAddress:
     )
 
 
-def counted_address(address: str) -> str:
-    """Return what failed logins are counted by: an IPv6 network of one customer counts as one address."""
-    found = _address(address)
-    if isinstance(found, IPv6Address):
-        return str(IPv6Address(int(found) >> IPV6_OF_A_CUSTOMER << IPV6_OF_A_CUSTOMER)) + "/64"
-    return address
+def _farthest_known(peer: Address, hops: Sequence[str], proxy: ProxySettings) -> Address:
+    """Return the first address before the named proxies, going back from the last hop.
+
+    What stands before that, or before a hop that is no address, may be forged by who asks.
+    """
+    found = peer
+    for hop in reversed(hops):
+        before = _address(_without_port(hop.strip()))
+        if before is None:
+            break
+        found = before
+        if not _is_of(found, proxy):
+            break
+    return found
 
 
-def _address(text: str) -> IPv4Address | IPv6Address | None:
+def _without_port(hop: str) -> str:
+    """Return the address of a hop such as 192.0.2.1:5678 or [2001:db8::1]:443."""
+    if hop.startswith("["):
+        return hop[1:].partition("]")[0]
+    return hop.partition(":")[0] if hop.count(":") == 1 else hop
+
+
+def _address(text: str) -> Address | None:
     try:
         found = ip_address(text)
     except ValueError:
@@ -66,5 +80,5 @@ def _address(text: str) -> IPv4Address | IPv6Address | None:
     return found if mapped is None else mapped
 
 
-def _is_of(address: IPv4Address | IPv6Address, proxy: ProxySettings) -> bool:
+def _is_of(address: Address, proxy: ProxySettings) -> bool:
     return any(address in network for network in proxy.addresses)

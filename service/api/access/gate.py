@@ -10,14 +10,15 @@ from http import HTTPStatus
 import structlog
 from sqlalchemy.exc import SQLAlchemyError
 from starlette.concurrency import run_in_threadpool
-from starlette.datastructures import Headers
-from starlette.types import ASGIApp, Receive, Scope, Send
+from starlette.datastructures import Headers, MutableHeaders
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from structlog.typing import FilteringBoundLogger
 
 from service.access.identities import Identity, Way, identity_of_session, identity_of_token
-from service.access.permissions import PERMISSIONS_OF
+from service.access.permissions import PERMISSIONS_OF, Permission
 from service.access.proxied import ProxiedUserError, identity_of_proxied
-from service.api.access.callers import FIRST_USER, SCOPE_KEY, Caller
+from service.access.refusals import NOBODY, Refusal
+from service.api.access.callers import FIRST_USER, SCOPE_KEY, Caller, forbidden
 from service.api.access.client_address import ClientAddress, client_address
 from service.api.access.cookies import session_secret
 from service.api.access.refusals import refuse
@@ -41,7 +42,18 @@ NOT_LOCAL = (
 SAY_WHO = "say who you are: log in (mcc login), or send a token (Authorization: Bearer ...)"
 ENDED = "the session has ended, or never was: log in (mcc login)"
 NO_TOKEN = "the token is unknown, revoked or expired"  # noqa: S105 - what is said of one
+OF_PEOPLE = frozenset({Permission.ACCOUNT, Permission.USERS, Permission.AUDIT})
+"""Answers of routes that need one of these tell of people: no cache keeps them."""
+
 CHALLENGE = {"WWW-Authenticate": 'Bearer realm="statorwatch"'}
+
+
+class RefusedError(ProblemError):
+    """Nobody who is known asks; `refusal` says why."""
+
+    def __init__(self, refusal: Refusal, detail: str, status: HTTPStatus = HTTPStatus.UNAUTHORIZED) -> None:
+        super().__init__(status, detail)
+        self.refusal = refusal
 
 
 class Gate:
@@ -66,20 +78,48 @@ class Gate:
         except SQLAlchemyError as error:
             await refuse(database_response(scope["path"], error), scope, receive, send)
         else:
-            await self._app({**scope, SCOPE_KEY: caller}, receive, send)
+            answering = self._noting(caller, scope, send)
+            if self._needs.of(scope["method"], scope["path"]) in OF_PEOPLE:
+                answering = _unstored(answering)
+            await self._app({**scope, SCOPE_KEY: caller}, receive, answering)
+
+    def _noting(self, caller: Caller, scope: Scope, send: Send) -> Send:
+        """Return what sends the answer, and notes where a route has refused this caller by itself."""
+
+        async def send_and_note(message: Message) -> None:
+            if message["type"] == "http.response.start" and message["status"] == HTTPStatus.FORBIDDEN:
+                await run_in_threadpool(self._note, Refusal.PERMISSION, caller.actor, scope)
+            await send(message)
+
+        return send_and_note
+
+    def _note(self, refusal: Refusal, actor: Actor, scope: Scope) -> None:
+        request = f"{scope['method']} {scope['path']}"
+        self._context.refusals.note(self._context.repository, refusal, actor, request)
 
     def _caller(self, scope: Scope) -> Caller:
         """Return who asks. Raises ProblemError, SQLAlchemyError."""
         headers = Headers(scope=scope)
         origin = client_address(scope, self._context.settings.access.proxy)
-        identity = self._identity(headers, origin)
-        if identity is None:
-            identity = self._nobody(scope["method"], origin)
+        try:
+            identity = self._identity(headers, origin) or self._nobody(scope["method"], origin)
+        except RefusedError as refused:
+            self._note(refused.refusal, Actor(NOBODY, origin.address), scope)
+            raise
         actor = Actor(identity.name, origin.address, identity.roles)
-        caller = Caller(actor, identity.permissions, identity.way, identity.session, identity.token)
+        caller = Caller(
+            actor,
+            identity.permissions,
+            identity.way,
+            identity.session,
+            identity.token,
+            identity.password_set_by,
+            identity.may_make_tokens,
+        )
         needed = self._needs.of(scope["method"], scope["path"])
-        if needed is not None:
-            caller.demand(needed)
+        if needed is not None and needed not in caller.permissions:
+            self._note(Refusal.PERMISSION, actor, scope)
+            raise forbidden(caller, needed)
         return caller
 
     def _identity(self, headers: Headers, origin: ClientAddress) -> Identity | None:
@@ -90,30 +130,31 @@ class Gate:
         if authorization:
             scheme, _, secret = authorization[0].strip().partition(" ")
             if len(authorization) > 1 or scheme.lower() != BEARER:
-                raise ProblemError(HTTPStatus.UNAUTHORIZED, SAY_WHO)
-            return _known(identity_of_token(repository, secret.strip(), now_ns=now_ns), NO_TOKEN)
+                raise RefusedError(Refusal.TOKEN, SAY_WHO)
+            found = identity_of_token(repository, settings, secret.strip(), now_ns=now_ns)
+            return _known(found, Refusal.TOKEN, NO_TOKEN)
         if origin.is_named_proxy and settings.proxy is not None:
             try:
                 proxied = identity_of_proxied(repository, settings.proxy, headers.getlist)
             except ProxiedUserError as error:
-                raise ProblemError(HTTPStatus.UNAUTHORIZED, str(error)) from error
+                raise RefusedError(Refusal.LOGIN, str(error)) from error
             if proxied is not None:
                 return proxied
-        secret = session_secret(headers) or ""
+        secret = session_secret(headers, encrypted=origin.is_encrypted) or ""
         if secret:
             is_use = headers.get(BY_ITSELF) is None
             found = identity_of_session(repository, settings, secret, now_ns=now_ns, is_use=is_use)
-            return _known(found, ENDED)
+            return _known(found, Refusal.SESSION, ENDED)
         return None
 
     def _nobody(self, method: str, origin: ClientAddress) -> Identity:
         """Return what may be done by who does not say who they are. Raises ProblemError."""
         if self._has_users():
-            raise ProblemError(HTTPStatus.UNAUTHORIZED, SAY_WHO)
+            raise RefusedError(Refusal.ANONYMOUS, SAY_WHO)
         if not origin.is_local:
-            raise ProblemError(HTTPStatus.UNAUTHORIZED, NOT_LOCAL)
+            raise RefusedError(Refusal.ANONYMOUS, NOT_LOCAL)
         if method not in READING:
-            raise ProblemError(HTTPStatus.FORBIDDEN, FIRST_USER)
+            raise RefusedError(Refusal.ANONYMOUS, FIRST_USER, HTTPStatus.FORBIDDEN)
         roles = frozenset({Role.VIEWER})
         return Identity("anonymous", roles, PERMISSIONS_OF[Role.VIEWER], Way.NONE)
 
@@ -127,7 +168,18 @@ class Gate:
         return self._had_users
 
 
-def _known(identity: Identity | None, otherwise: str) -> Identity:
+def _unstored(send: Send) -> Send:
+    """Return what sends an answer that nobody is to keep."""
+
+    async def send_unstored(message: Message) -> None:
+        if message["type"] == "http.response.start":
+            MutableHeaders(scope=message)["Cache-Control"] = "no-store"
+        await send(message)
+
+    return send_unstored
+
+
+def _known(identity: Identity | None, refusal: Refusal, otherwise: str) -> Identity:
     if identity is None:
-        raise ProblemError(HTTPStatus.UNAUTHORIZED, otherwise)
+        raise RefusedError(refusal, otherwise)
     return identity

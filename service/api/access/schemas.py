@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, Field, StringConstraints
 
 from service.access.permissions import Permission
+from service.access.second_factors import CODES
 from service.access.user_names import NAME_RULE, name_of
 from service.api.document import Document, Listed, Person, RequestDocument
 from service.api.times import Time, TimeParameter
@@ -28,28 +29,44 @@ Password = Annotated[str, StringConstraints(min_length=1, max_length=1024)]
 Roles = Annotated[set[Role], Field(max_length=len(Role))]
 
 
+FactorCodeText = Annotated[str, StringConstraints(min_length=1, max_length=40)]
+
+
 class LoginRequest(RequestDocument):
-    """Who logs in."""
+    """Who logs in. code: of their authenticator app, or a recovery code, where they have a second factor."""
 
     name: Annotated[str, StringConstraints(min_length=1, max_length=200)]
     password: Password
+    code: FactorCodeText | None = None
 
 
 class LoginWays(Document):
-    """How one logs in here. oidc: where a browser begins to log in at the plant's identity provider."""
+    """How one logs in here. oidc: where a browser begins to log in at the plant's identity provider.
+
+    notice: on the use of the service. Who logs in acknowledges it.
+    """
 
     password: bool
     oidc: str | None
+    notice: str | None
 
 
 class Account(Document):
-    """Who asks, and what they may do. way: how they showed who they are."""
+    """Who asks, and what they may do. way: how they showed who they are.
+
+    password_set_by: who else gave them the password of this session; they change it before they do anything.
+    second_factor: "missing" where a role needs one and there is none; then one may but set it up.
+    recovery_codes_left: that were not used.
+    """
 
     name: str
     full_name: str | None
     roles: Listed[Role]
     permissions: Listed[Permission]
     way: Literal["session", "token", "proxy", "none"]
+    password_set_by: str | None
+    second_factor: Literal["none", "missing", "set-up"]
+    recovery_codes_left: int
 
 
 class PasswordChange(RequestDocument):
@@ -59,8 +76,39 @@ class PasswordChange(RequestDocument):
     new: Password
 
 
+class OwnPassword(RequestDocument):
+    """The own password, again, for what a session left open must not do."""
+
+    password: Password
+
+
+class FactorCode(RequestDocument):
+    """A code of the authenticator app that is being set up."""
+
+    code: FactorCodeText
+
+
+class TotpProposal(Document):
+    """A secret for an authenticator app. uri: the same as the app reads it from a picture."""
+
+    secret: str
+    uri: str
+
+
+class RecoveryCodes(Document):
+    """Codes that stand for the second factor, each of them once. They are not kept here."""
+
+    recovery_codes: Annotated[list[str], Field(max_length=CODES)]
+
+
+class OneTimeCode(Document):
+    """A code that stands for the second factor once."""
+
+    code: str
+
+
 class NewPassword(RequestDocument):
-    """Another password for a user."""
+    """Change password for a user."""
 
     password: Password
 
@@ -68,7 +116,9 @@ class NewPassword(RequestDocument):
 class User(Document):
     """Somebody who may log in. has_password: whether with a password; subject: with an identity provider.
 
+    has_second_factor: whether their password lets nobody in alone.
     locked_until_time: none of their logins is tried before from some address, because too many failed.
+    password_set_by: who else gave them their password, until they change it.
     """
 
     name: str
@@ -76,16 +126,21 @@ class User(Document):
     roles: Listed[Role]
     disabled: bool
     has_password: bool
+    has_second_factor: bool
     subject: str | None
     created_time: Time = Field(validation_alias="created_ns")
     password_set_time: Time | None = Field(validation_alias="password_set_ns")
+    password_set_by: str | None
     last_login_time: Time | None = Field(validation_alias="last_login_ns")
     last_login_origin: str | None
     locked_until_time: Time | None = None
 
 
 class UserRequest(RequestDocument):
-    """A new user. Without a password nobody can log in as them, but they may have tokens."""
+    """A new user, who changes the password first. Without one nobody can log in as them.
+
+    The role SECAUD is given by the owner of the service's files alone.
+    """
 
     name: NewName
     full_name: Person | None = None
@@ -102,12 +157,16 @@ class UserChange(RequestDocument):
 
 
 class Token(Document):
-    """A secret of a user for a program, without the secret. scope: null for all that the user may."""
+    """A secret of a user for a program, without the secret. scope: null for all that the user may.
+
+    parent: the token that asked for this one, and with which it ends; null where a person did.
+    """
 
     id: str
     user: str
     label: str
     scope: Listed[str] | None
+    parent: str | None
     created_time: Time = Field(validation_alias="created_ns")
     expires_time: Time | None = Field(validation_alias="expires_ns")
     used_time: Time | None = Field(validation_alias="used_ns")
@@ -120,7 +179,10 @@ class NewToken(Token):
 
 
 class TokenRequest(RequestDocument):
-    """What a new token is for. scope: the permissions it has, by default all of its user."""
+    """What a new token is for. scope: the permissions it has, by default all of who asks.
+
+    expires_time: by default as late as the settings, and the token that asks, let it.
+    """
 
     label: Person
     scope: Annotated[set[Permission], Field(min_length=1, max_length=len(Permission))] | None = None

@@ -3,59 +3,85 @@
 import time
 from functools import partial
 from http import HTTPStatus
+from typing import Literal, Protocol, TypedDict, TypeVar
 
 from fastapi import APIRouter, Request, Response
 from fastapi.concurrency import run_in_threadpool
 
 from service.access import logins
-from service.access.passwords import PASSWORD_RULE, hashed, is_usable
-from service.access.permissions import Permission, permissions_of
-from service.api.access.callers import FIRST_USER, Asking
-from service.api.access.client_address import ClientAddress, client_address, counted_address
-from service.api.access.cookies import clear_session, set_session
+from service.access.identities import permissions_after_login
+from service.access.passwords import UnusablePasswordError, new_hash
+from service.access.permissions import Permission
+from service.access.refusals import NOBODY, Refusal
+from service.access.second_factors import is_missing
+from service.api.access.callers import FIRST_USER, Asking, Caller
+from service.api.access.client_address import ClientAddress, client_address
+from service.api.access.cookies import clear_session, session_secret, set_session
 from service.api.access.requirements import open_to_all, require
 from service.api.access.schemas import Account, LoginRequest, LoginWays, PasswordChange
 from service.api.context import ApiContext, Context
 from service.api.problems import ProblemError, WrongFieldError, problems
+from service.process.sealing import Seal
 from service.storage import NotFoundError
 from service.storage.records import Actor, User
 
 router = APIRouter(tags=["access"])
 
+LOGIN = "POST /api/v1/login"
 OIDC_PATH = "/api/v1/login/oidc"
+
+Found_co = TypeVar("Found_co", covariant=True)
+
+
+class _SecondFactor(TypedDict):
+    second_factor: Literal["none", "missing", "set-up"]
+    recovery_codes_left: int
 
 
 @router.get("/login", responses=problems(), dependencies=[open_to_all()])
 def get_login_ways(context: Context) -> LoginWays:
     """Return how one logs in here."""
-    return LoginWays(password=True, oidc=OIDC_PATH if context.settings.access.oidc else None)
+    access = context.settings.access
+    return LoginWays(password=True, oidc=OIDC_PATH if access.oidc else None, notice=access.use_notice)
 
 
 @router.post("/login", responses=problems(400, 413, 429), dependencies=[open_to_all()])
 async def log_in(context: Context, request: Request, response: Response, wanted: LoginRequest) -> Account:
     """Begin a session, with a name and a password; the answer's cookie is its secret."""
-    user = await begin_session(context, request, response, wanted.name, wanted.password)
+    user = await begin_session(context, request, response, wanted)
     return Account(
         name=user.name,
         full_name=user.full_name,
         roles=sorted(user.roles),
-        permissions=sorted(permissions_of(user.roles)),
+        permissions=sorted(permissions_after_login(context.settings.access, user)),
         way="session",
+        password_set_by=user.password_set_by,
+        **await run_in_threadpool(_second_factor_of, context, user),
     )
 
 
 async def begin_session(
-    context: ApiContext, request: Request, response: Response, name: str, password: str
+    context: ApiContext, request: Request, response: Response, wanted: LoginRequest
 ) -> User:
-    """Begin a session of who knows a user's password: the response gets its cookie.
+    """Begin a session of who shows all that is asked of a user: the response gets its cookie.
 
     Raises ProblemError (401, 403), LoginLockedError, BusyError.
     """
     origin = client_address(request.scope, context.settings.access.proxy)
     if not await run_in_threadpool(context.repository.has_users):
         raise ProblemError(HTTPStatus.FORBIDDEN, FIRST_USER)
-    account = logins.account_of(name)
-    await _check(context, account, password, origin)
+    account = logins.account_of(wanted.name)
+    look = partial(
+        logins.check_login,
+        context.repository,
+        context.settings.access,
+        partial(seal_of, context),
+        account,
+        wanted.password,
+        wanted.code,
+        origin.address,
+    )
+    second_factor = await _check(context, account, origin, look)
     user = await run_in_threadpool(_user, context, account)
     by = Actor(user.name, origin.address, user.roles)
     secret = await run_in_threadpool(
@@ -65,6 +91,8 @@ async def begin_session(
             context.settings.access,
             by,
             "password",
+            second_factor=second_factor,
+            ends=session_secret(request.headers, encrypted=origin.is_encrypted),
             now_ns=time.time_ns(),
         )
     )
@@ -92,16 +120,28 @@ def log_out(context: Context, request: Request, response: Response, asking: Aski
 def get_account(context: Context, asking: Asking) -> Account:
     """Return who asks, and what they may do."""
     try:
-        full_name = context.repository.user(asking.actor.name).full_name
+        user = context.repository.user(asking.actor.name)
     except NotFoundError:  # known to a proxy, or nobody yet
-        full_name = None
+        user = None
     return Account(
         name=asking.actor.name,
-        full_name=full_name,
+        full_name=None if user is None else user.full_name,
         roles=sorted(asking.actor.roles),
         permissions=sorted(asking.permissions),
         way=asking.way.value,
+        password_set_by=asking.password_set_by,
+        **_second_factor_of(context, user),
     )
+
+
+def _second_factor_of(context: ApiContext, user: User | None) -> _SecondFactor:
+    if user is None:
+        return {"second_factor": "none", "recovery_codes_left": 0}
+    missing = is_missing(context.settings.access, user)
+    return {
+        "second_factor": "missing" if missing else "set-up" if user.has_second_factor else "none",
+        "recovery_codes_left": context.repository.recovery_codes_left(user.name),
+    }
 
 
 @router.put(
@@ -111,43 +151,85 @@ def get_account(context: Context, asking: Asking) -> Account:
     dependencies=[require(Permission.ACCOUNT)],
 )
 async def change_password(context: Context, request: Request, asking: Asking, wanted: PasswordChange) -> None:
-    """Change the own password; all own sessions end, this one too."""
+    """Change the own password; all own sessions end, this one too, and all own tokens."""
     name = asking.actor.name
-    refuse_unusable(wanted.new, name, "body.new")
-    origin = client_address(request.scope, context.settings.access.proxy)
-    await _check(context, name, wanted.old, origin)
-    await keep_password(context, name, wanted.new, by=asking.actor)
+    await check_own_password(context, request, asking, wanted.old)
+    await keep_password(context, name, wanted.new, "body.new", by=asking.actor)
 
 
-async def keep_password(context: ApiContext, name: str, password: str, *, by: Actor) -> None:
-    """Give a user another password. Raises NotFoundError, BusyError."""
-    async with context.passwords.admitted():
-        kept = await run_in_threadpool(hashed, password)
+async def keep_password(context: ApiContext, name: str, password: str, location: str, *, by: Actor) -> None:
+    """Give a user another password, from this place of a request.
+
+    Raises NotFoundError, AuditorAccountError, NotOwnPasswordError, BusyError, ProblemError (422).
+    """
+    user = await run_in_threadpool(_user, context, name)
+    present = await run_in_threadpool(partial(context.repository.password_to_change, name, by=by))
+    kept = await hash_of(context, password, name, user.full_name, location, present=present)
     await run_in_threadpool(
         partial(context.repository.set_password, name, kept, by=by, now_ns=time.time_ns())
     )
 
 
-def refuse_unusable(password: str, name: str, location: str) -> None:
-    """Raise ProblemError (422) for a password that does not fit the rule."""
-    if not is_usable(password, name):
-        message = f"expected {PASSWORD_RULE}"
-        raise WrongFieldError(location, message)
-
-
-async def _check(context: ApiContext, account: str, password: str, origin: ClientAddress) -> None:
-    """Look at a password. Raises ProblemError (401), LoginLockedError, BusyError."""
-    settings, repository = context.settings.access, context.repository
-    address, now_ns = counted_address(origin.address), time.time_ns()
-    # Those who may not try are told at once; the others wait for their turn to use the memory of a hash.
-    await run_in_threadpool(partial(logins.attempt, repository, settings, account, address, now_ns=now_ns))
+async def hash_of(
+    context: ApiContext,
+    password: str,
+    name: str,
+    full_name: str | None,
+    location: str,
+    *,
+    present: str | None = None,
+) -> str:
+    """Return a hash of a new password. Raises ProblemError (422) for one that does not fit, BusyError."""
     async with context.passwords.admitted():
         try:
-            await run_in_threadpool(
-                partial(logins.check_password, repository, account, password, address, now_ns=now_ns)
+            return await run_in_threadpool(
+                partial(new_hash, password, name, full_name=full_name, present=present)
             )
+        except UnusablePasswordError as error:
+            raise WrongFieldError(location, str(error)) from error
+
+
+async def check_own_password(context: ApiContext, request: Request, asking: Caller, password: str) -> None:
+    """Look at the password of who asks, again. Raises ProblemError (401), LoginLockedError, BusyError."""
+    origin, name = client_address(request.scope, context.settings.access.proxy), asking.actor.name
+    look = partial(logins.check_password, context.repository, name, password, origin.address)
+    await _check(context, name, origin, look)
+
+
+class Look(Protocol[Found_co]):
+    """Looks at what somebody shows. Raises LoginRefusedError."""
+
+    def __call__(self, *, now_ns: int) -> Found_co: ...
+
+
+async def _check(context: ApiContext, account: str, origin: ClientAddress, look: Look[Found_co]) -> Found_co:
+    """Look at what somebody shows, if they may try.
+
+    Raises ProblemError (401), LoginLockedError, BusyError.
+    """
+    settings, repository = context.settings.access, context.repository
+    address, now_ns = origin.address, time.time_ns()
+    # Those who may not try are told at once; the others wait for their turn to use the memory of a hash.
+    try:
+        await run_in_threadpool(
+            partial(logins.attempt, repository, settings, account, address, now_ns=now_ns)
+        )
+    except logins.LoginLockedError:
+        await run_in_threadpool(
+            context.refusals.note, repository, Refusal.LOCKED, Actor(NOBODY, address), LOGIN
+        )
+        raise
+    async with context.passwords.admitted():
+        try:
+            return await run_in_threadpool(partial(look, now_ns=now_ns))
         except logins.LoginRefusedError as error:
+            context.refusals.note(repository, Refusal.LOGIN, Actor(NOBODY, address), LOGIN)
             raise ProblemError(HTTPStatus.UNAUTHORIZED, str(error)) from error
+
+
+def seal_of(context: ApiContext) -> Seal:
+    """Return what opens sealed secrets. Raises SealError."""
+    return Seal(context.settings.secrets_key_file)
 
 
 def _user(context: ApiContext, account: str) -> User:

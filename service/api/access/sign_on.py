@@ -12,7 +12,7 @@ from fastapi.responses import HTMLResponse, RedirectResponse
 from service.access import logins
 from service.access.oidc import Attempt, OpenIdProvider, ProviderError, SignedOn, SignOnRefusedError
 from service.api.access.client_address import client_address
-from service.api.access.cookies import set_session
+from service.api.access.cookies import session_secret, set_session
 from service.api.access.requirements import open_to_all
 from service.api.context import ApiContext, Context
 from service.api.limits.admission import Admission
@@ -102,7 +102,8 @@ def sign_on_router(provider: OpenIdProvider) -> APIRouter:
                 raise _unavailable(trouble) from trouble
             except SignOnRefusedError as refusal:
                 raise ProblemError(HTTPStatus.UNAUTHORIZED, str(refusal)) from refusal
-            secret = await run_in_threadpool(partial(_begin, context, found, origin.address))
+            old = session_secret(request.headers, encrypted=origin.is_encrypted)
+            secret = await run_in_threadpool(partial(_begin, context, found, origin.address, old))
         response = HTMLResponse(DONE, headers=PAGE_HEADERS)
         seconds = context.settings.access.session_hours * 3600
         set_session(response, secret, seconds=seconds, encrypted=origin.is_encrypted)
@@ -112,9 +113,11 @@ def sign_on_router(provider: OpenIdProvider) -> APIRouter:
     return router
 
 
-def _begin(context: ApiContext, found: SignedOn, address: str) -> str:
+def _begin(context: ApiContext, found: SignedOn, address: str, old: str | None) -> str:
     """Return the secret of a session of who signed on. Raises ProblemError."""
     if not found.roles:
+        by = Actor(found.name, address)
+        context.repository.refuse_subject(found.subject, by=by, now_ns=time.time_ns())
         raise ProblemError(
             HTTPStatus.FORBIDDEN, f"{found.name} has no group that gives a role (access.oidc.roles)"
         )
@@ -125,7 +128,13 @@ def _begin(context: ApiContext, found: SignedOn, address: str) -> str:
     by = Actor(user.name, address, user.roles)
     try:
         return logins.begin_session(
-            context.repository, context.settings.access, by, provider, now_ns=time.time_ns()
+            context.repository,
+            context.settings.access,
+            by,
+            provider,
+            second_factor=True,
+            ends=old,
+            now_ns=time.time_ns(),
         )
     except NotFoundError as error:
         raise ProblemError(HTTPStatus.FORBIDDEN, f"user {user.name} is gone") from error

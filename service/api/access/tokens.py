@@ -1,20 +1,23 @@
-"""Tokens for programs: the own ones, and those of all users for who manages them."""
+"""Tokens for programs: everybody makes their own; who manages users sees and ends those of all."""
 
 import time
+from functools import partial
 from http import HTTPStatus
 from uuid import UUID
 
 from fastapi import APIRouter
 
 from service.access.bearer_secrets import digest_of, new_token
+from service.access.identities import Way
 from service.access.permissions import Permission
-from service.api.access.callers import Asking, By
+from service.access.tokens import TokenLifetimeError, as_it_counts, end_of
+from service.api.access.callers import Asking, By, Caller
 from service.api.access.requirements import require
 from service.api.access.schemas import NewToken, Token, TokenRequest, UserName
 from service.api.context import ApiContext, Context
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
-from service.api.problems import WrongFieldError, problems
-from service.storage.records import Actor, ApiToken
+from service.api.problems import ProblemError, WrongFieldError, problems
+from service.storage.records import ApiToken
 
 router = APIRouter(tags=["access"])
 
@@ -25,7 +28,7 @@ def list_own_tokens(
 ) -> Page[Token]:
     """Return the own tokens, without their secrets."""
     found = context.repository.tokens(user=caller.name, limit=limit, after=decode(cursor, str))
-    return page(found, _document)
+    return page(found, partial(_document, context))
 
 
 @router.post(
@@ -35,15 +38,43 @@ def list_own_tokens(
     dependencies=[require(Permission.ACCOUNT)],
 )
 def add_own_token(context: Context, asking: Asking, wanted: TokenRequest) -> NewToken:
-    """Make a token that may do no more than who asks for it. Its secret is shown this once."""
+    """Make a token that may do no more than who asks, nor for longer. Its secret is shown this once."""
+    _require_second_factor(asking)
     scope = wanted.scope
     beyond = sorted(permission.value for permission in (scope or set()) - asking.permissions)
     if beyond:
         message = f"expected permissions that you have yourself, found {', '.join(beyond)}"
         raise WrongFieldError("body.scope", message)
-    if scope is None and asking.way == "token":  # a narrow token makes no wide one
+    if scope is None and asking.way is not Way.SESSION:  # a token or a proxy may give less than the roles
         scope = set(asking.permissions)
-    return _add(context, asking.actor.name, wanted.model_copy(update={"scope": scope}), asking.actor)
+    now_ns = time.time_ns()
+    try:
+        expires_ns = end_of(wanted.expires_time, context.settings.access, parent=asking.token, now_ns=now_ns)
+    except TokenLifetimeError as error:
+        raise WrongFieldError("body.expires_time", str(error)) from error
+    secret = new_token()
+    kept = context.repository.add_token(
+        asking.actor.name,
+        wanted.label,
+        digest_of(secret),
+        scope=scope,
+        expires_ns=expires_ns,
+        parent=None if asking.token is None else asking.token.id,
+        by=asking.actor,
+        now_ns=now_ns,
+    )
+    return NewToken(**_document(context, kept).model_dump(), token=secret)
+
+
+@router.delete(
+    "/account/tokens",
+    status_code=HTTPStatus.NO_CONTENT,
+    responses=problems(404),
+    dependencies=[require(Permission.ACCOUNT)],
+)
+def revoke_own_tokens(context: Context, caller: By) -> None:
+    """End all of the own tokens."""
+    context.repository.revoke_tokens(caller.name, by=caller, now_ns=time.time_ns())
 
 
 @router.delete(
@@ -53,25 +84,26 @@ def add_own_token(context: Context, asking: Asking, wanted: TokenRequest) -> New
     dependencies=[require(Permission.ACCOUNT)],
 )
 def revoke_own_token(context: Context, token_id: UUID, caller: By) -> None:
-    """End one of the own tokens."""
+    """End one of the own tokens, and those that were made with it."""
     context.repository.revoke_token(str(token_id), user=caller.name, by=caller, now_ns=time.time_ns())
 
 
 @router.get("/tokens", responses=problems(), dependencies=[require(Permission.USERS)])
 def list_tokens(context: Context, limit: Limit = DEFAULT_LIMIT, cursor: CursorText = None) -> Page[Token]:
     """Return the tokens of all users, without their secrets."""
-    return page(context.repository.tokens(user=None, limit=limit, after=decode(cursor, str)), _document)
+    found = context.repository.tokens(user=None, limit=limit, after=decode(cursor, str))
+    return page(found, partial(_document, context))
 
 
-@router.post(
+@router.delete(
     "/users/{name}/tokens",
-    status_code=HTTPStatus.CREATED,
-    responses=problems(400, 404, 409, 413),
+    status_code=HTTPStatus.NO_CONTENT,
+    responses=problems(404),
     dependencies=[require(Permission.USERS)],
 )
-def add_token(context: Context, name: UserName, wanted: TokenRequest, caller: By) -> NewToken:
-    """Make a token of a user, such as one that stands for a program. Its secret is shown this once."""
-    return _add(context, name, wanted, caller)
+def revoke_tokens(context: Context, name: UserName, caller: By) -> None:
+    """End all tokens of a user; their sessions stay."""
+    context.repository.revoke_tokens(name, by=caller, now_ns=time.time_ns())
 
 
 @router.delete(
@@ -81,27 +113,19 @@ def add_token(context: Context, name: UserName, wanted: TokenRequest, caller: By
     dependencies=[require(Permission.USERS)],
 )
 def revoke_token(context: Context, token_id: UUID, caller: By) -> None:
-    """End a token of whomever."""
+    """End a token of whomever, and those that were made with it."""
     context.repository.revoke_token(str(token_id), user=None, by=caller, now_ns=time.time_ns())
 
 
-def _add(context: ApiContext, user: str, wanted: TokenRequest, by: Actor) -> NewToken:
-    now_ns = time.time_ns()
-    if wanted.expires_time is not None and wanted.expires_time <= now_ns:
-        message = "expected a time that is still to come"
-        raise WrongFieldError("body.expires_time", message)
-    secret = new_token()
-    kept = context.repository.add_token(
-        user,
-        wanted.label,
-        digest_of(secret),
-        scope=wanted.scope,
-        expires_ns=wanted.expires_time,
-        by=by,
-        now_ns=now_ns,
-    )
-    return NewToken(**_document(kept).model_dump(), token=secret)
+def _require_second_factor(asking: Caller) -> None:
+    """Raise ProblemError (403) for who needs a second factor and has not shown it."""
+    if not asking.may_make_tokens:
+        raise ProblemError(
+            HTTPStatus.FORBIDDEN,
+            "your account needs a second factor, and tokens are made by a login with it alone: log in "
+            "(mcc login), and set up the second factor where there is none (/account)",
+        )
 
 
-def _document(token: ApiToken) -> Token:
-    return Token.model_validate(token)
+def _document(context: ApiContext, token: ApiToken) -> Token:
+    return Token.model_validate(as_it_counts(token, context.settings.access))

@@ -7,15 +7,16 @@ from http import HTTPStatus
 from fastapi import APIRouter, Request, Response
 from fastapi.concurrency import run_in_threadpool
 
-from service.access.passwords import hashed
+from core.time_stamps import rfc3339
 from service.access.permissions import Permission
 from service.api.access.callers import By
 from service.api.access.requirements import require
 from service.api.access.schemas import NewPassword, User, UserChange, UserName, UserRequest
-from service.api.access.sessions import keep_password, refuse_unusable
+from service.api.access.sessions import hash_of, keep_password
 from service.api.context import ApiContext, Context
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
+from service.storage.errors import NotOwnPasswordError
 from service.storage.records import User as StoredUser
 
 router = APIRouter(prefix="/users", tags=["access"], dependencies=[])
@@ -37,12 +38,10 @@ def list_users(context: Context, limit: Limit = DEFAULT_LIMIT, cursor: CursorTex
 async def add_user(
     context: Context, request: Request, response: Response, wanted: UserRequest, caller: By
 ) -> User:
-    """Make a user."""
+    """Make a user. Somebody else's choice of a password is changed before anything is done with it."""
     kept = None
     if wanted.password is not None:
-        refuse_unusable(wanted.password, wanted.name, "body.password")
-        async with context.passwords.admitted():
-            kept = await run_in_threadpool(hashed, wanted.password)
+        kept = await hash_of(context, wanted.password, wanted.name, wanted.full_name, "body.password")
     user = await run_in_threadpool(
         partial(
             context.repository.add_user,
@@ -66,7 +65,10 @@ def get_user(context: Context, name: UserName) -> User:
 
 @router.patch("/{name}", responses=problems(400, 404, 409, 413), dependencies=[require(Permission.USERS)])
 def change_user(context: Context, name: UserName, wanted: UserChange, caller: By) -> User:
-    """Change a user's name or roles, disable or enable them; other roles end their sessions."""
+    """Change a user's name or roles, disable or enable them.
+
+    Other roles end their sessions, being disabled their tokens, too.
+    """
     user = context.repository.change_user(
         name,
         roles=wanted.roles,
@@ -81,13 +83,15 @@ def change_user(context: Context, name: UserName, wanted: UserChange, caller: By
 @router.put(
     "/{name}/password",
     status_code=HTTPStatus.NO_CONTENT,
-    responses=problems(400, 404, 413),
+    responses=problems(400, 404, 409, 413),
     dependencies=[require(Permission.USERS)],
 )
 async def set_password(context: Context, name: UserName, wanted: NewPassword, caller: By) -> None:
-    """Give a user another password; their sessions end."""
-    refuse_unusable(wanted.password, name, "body.password")
-    await keep_password(context, name, wanted.password, by=caller)
+    """Give another user a password, which they change first; their sessions and tokens end."""
+    if name == caller.name:  # whose token asks would get a session by it, which may do more
+        instead = "it is your own: PUT /api/v1/account/password (mcc password) asks for the old one"
+        raise NotOwnPasswordError(name, instead)
+    await keep_password(context, name, wanted.password, "body.password", by=caller)
 
 
 @router.delete(
@@ -97,7 +101,7 @@ async def set_password(context: Context, name: UserName, wanted: NewPassword, ca
     dependencies=[require(Permission.USERS)],
 )
 def end_sessions(context: Context, name: UserName, caller: By) -> None:
-    """End all sessions of a user; their tokens stay."""
+    """End all sessions and all tokens of a user."""
     context.repository.end_sessions_of(name, by=caller, now_ns=time.time_ns())
 
 
@@ -126,11 +130,4 @@ def delete_user(context: Context, name: UserName, caller: By) -> None:
 def _document(context: ApiContext, user: StoredUser) -> User:
     until_ns = context.repository.locked_until(user.name, now_ns=time.time_ns())
     document = User.model_validate(user)
-    if until_ns is None:
-        return document
-    return User.model_validate(
-        {
-            **{name: getattr(user, name) for name in StoredUser.__slots__},
-            "locked_until_time": until_ns,
-        }
-    )
+    return document.model_copy(update={"locked_until_time": None if until_ns is None else rfc3339(until_ns)})

@@ -1,7 +1,5 @@
 """Documents of the one answer. Fields that are null are not known."""
 
-from pydantic import Field
-
 from service.api.document import Document, Listed
 
 
@@ -32,19 +30,11 @@ class NotToldApart(Document):
     tests: Listed[str]
 
 
-class Pair(Document):
-    """Two causes that show in the same figures, and the log of their likelihood together, as of one alone."""
-
-    causes: Listed[str]
-    log_likelihood_ratio: float
-
-
 class Classification(Document):
     """The one answer of a record or of a motor.
 
     answer: the likeliest causes. is_told: whether they are likely enough to be the answer alone. words: the
     answer as people read it. The verdict is what raises alarms; where it differs, `reasons` say so.
-    pairs: empty of a diagnosis that an earlier version made.
     """
 
     answer: Listed[str]
@@ -55,7 +45,6 @@ class Classification(Document):
     explanations: Listed[Explanation]
     not_told_apart: Listed[NotToldApart]
     reasons: Listed[str]
-    pairs: Listed[Pair] = Field(default_factory=list)
 
 
 class MotorClassification(Classification):

@@ -7,6 +7,8 @@ from core.condition.verdict.advice import advice
 from core.condition.verdict.latest_record import why_milder
 from core.machines.parameters import ParametersSource
 from core.machines.typical import TYPICAL_REASON
+from core.motor_condition.condition import Urgency
+from core.motor_condition.parts import Part
 from service.api.conditions.schemas import Condition, ConditionReference
 from service.condition.staleness import is_stale
 from service.storage.records import ConditionEntry, LatestDiagnosis
@@ -31,6 +33,10 @@ _NOTHING: Mapping[str, object] = {
     "kind": Kind.NONE,
     "candidates": [],
     "forecast": {"limit": None, "days": None},
+    "finding": "",
+    "urgency": Urgency.NONE,
+    "causes": [],
+    "parts": [],
     "reference": {},
     "advice": advice(State.UNKNOWN, Kind.NONE),
     "reasons": [NOT_JUDGED],
@@ -76,7 +82,7 @@ def _why_milder(
     entry: ConditionEntry, latest: LatestDiagnosis, reference: Mapping[str, object]
 ) -> str | None:
     return why_milder(
-        entry.state,
+        entry.state_of(Part.STATOR),
         latest.verdict,
         latest.mu_f,
         latest.phase,

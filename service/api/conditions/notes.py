@@ -55,7 +55,7 @@ def add_note(
     if wanted.kind is not EventKind.NOTE:
         asking.demand(Permission.CONFIGURE, f"tell of {wanted.kind.value}")
     caller = asking.actor
-    note = keep_note(context, name, wanted.kind, wanted.text, caller, wanted.by, wanted.time)
+    note = keep_note(context, name, wanted.kind, wanted.text, caller, wanted.on_behalf_of, wanted.time)
     response.headers["Location"] = path_to(request, "get_note", name=name, note_id=note.id)
     return note
 
@@ -74,7 +74,12 @@ def get_note(context: Context, name: Name, note_id: UUID) -> Note:
 def withdraw_note(context: Context, name: Name, note_id: UUID, wanted: Withdrawal, caller: By) -> Note:
     """Let a note that was wrong count no more; the condition follows as if nobody had told it."""
     note = context.repository.withdraw_event(
-        name, str(note_id), by=caller, told_by=wanted.by, reason=wanted.reason, now_ns=time.time_ns()
+        name,
+        str(note_id),
+        by=caller,
+        on_behalf_of=wanted.on_behalf_of,
+        reason=wanted.reason,
+        now_ns=time.time_ns(),
     )
     context.on_new_job()
     return Note.model_validate(note)
@@ -91,7 +96,7 @@ def restart_reference(
 ) -> Note:
     """Take the motor for healthy as it is: its standing asymmetry is learnt anew. The answer is a note."""
     kind = EventKind.REFERENCE_RESTARTED
-    note = keep_note(context, name, kind, wanted.reason, caller, wanted.by, wanted.time)
+    note = keep_note(context, name, kind, wanted.reason, caller, wanted.on_behalf_of, wanted.time)
     response.headers["Location"] = path_to(request, "get_note", name=name, note_id=note.id)
     return note
 
@@ -102,7 +107,7 @@ def keep_note(
     kind: EventKind,
     text: str,
     by: Actor,
-    told_by: str | None,
+    on_behalf_of: str | None,
     time_ns: int | None,
 ) -> Note:
     """Keep what somebody tells of a motor, and have its condition follow.
@@ -128,7 +133,12 @@ def keep_note(
     # However much was noted of a motor before: who tested it can say that it is healthy.
     most_notes = None if kind is EventKind.REFERENCE_RESTARTED else context.settings.max_notes
     event = context.repository.add_event(
-        motor, Event(time_ns, kind, text), by=by, told_by=told_by, now_ns=now_ns, most_notes=most_notes
+        motor,
+        Event(time_ns, kind, text),
+        by=by,
+        on_behalf_of=on_behalf_of,
+        now_ns=now_ns,
+        most_notes=most_notes,
     )
     context.on_new_job()
     return Note.model_validate(event)

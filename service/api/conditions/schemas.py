@@ -2,10 +2,12 @@
 
 from pydantic import Field
 
-from core.condition.assessment import Phase
+from core.condition.assessment import Phase, Phases
 from core.condition.events import EventKind
 from core.condition.kinds import Kind, State
-from service.api.document import Document, Listed, Person, Reason, RequestDocument
+from core.motor_condition.condition import Urgency
+from core.motor_condition.parts import Part
+from service.api.document import Document, Listed, Reason, RequestForSomebody
 from service.api.times import Time, TimeParameter
 
 Interval = tuple[float, float]
@@ -27,6 +29,7 @@ class ConditionReference(Document):
 
     complete: whether changes are looked for. standing: level that the asymmetry from the first record on
     would mean if it were shorted turns (..._ci95: 95 % interval, ..._deviation: standard deviation,
+    ..._phase_probabilities: of the phases a, b and c, ..._axis_deg: axis of the coils, as below,
     ..._score: standard deviations beyond what the sensors leave). detectable: step of the level that would be
     seen within ten records in nine of ten cases. from_bus: whether other motors of the bus took part in
     judging it.
@@ -40,7 +43,8 @@ class ConditionReference(Document):
     standing_ci95: tuple[float, float] | None
     standing_deviation: float | None
     standing_phase: Phase | None
-    standing_path_ratio: float | None
+    standing_phase_probabilities: Phases | None = None
+    standing_axis_deg: float | None = None
     standing_score: float | None
     detectable: float | None
     since: Time | None
@@ -51,10 +55,36 @@ class ConditionReference(Document):
     accepted_phase: Phase | None = None
 
 
+class PartOfMotor(Document):
+    """What is said of one part of a motor, or of what surrounds it.
+
+    explained_by: the part whose finding explains this one, which does not count again.
+    """
+
+    part: Part
+    state: State
+    finding: str
+    since: Time | None
+    advice: str
+    reasons: Listed[str]
+    explained_by: Part | None
+
+
+class LikelyCause(Document):
+    """Causes that together explain all that is measured, "healthy" for none, and their probability."""
+
+    causes: Listed[str]
+    words: str
+    probability: float
+
+
 class Condition(Document):
     """The condition of a motor over time, judged from all its records: what a plant acts on.
 
-    kind: what has changed, or stands out from the first record on; `candidates` where that is unclear.
+    state: of its worst part. kind: what that part has; `finding`: the same in words. causes: explanations of
+    all that is measured, the likeliest first. parts: each of them. `candidates`: what an unclear kind may be.
+    phase: null where it is less than 95 % sure. phase_probabilities: of a, b and c, if it is shorted turns.
+    axis_deg: electrical degrees of their coils' axis from the phase's, where the motor's winding is known.
     mu_f: fault level in all, change: since the reference, as fractions of the phase turns, each with its 95 %
     interval from noise, sensors and parameters. size: of the change in its own measure, for example the
     relative error of a channel, with its 95 % interval. since: first record that shows the change.
@@ -66,6 +96,8 @@ class Condition(Document):
     kind: Kind
     candidates: Listed[Kind]
     phase: Phase | None
+    phase_probabilities: Phases | None = None
+    axis_deg: float | None = None
     mu_f: float | None
     mu_f_ci95: Interval | None
     change: float | None
@@ -80,6 +112,10 @@ class Condition(Document):
     stale: bool
     advice: str
     reasons: Listed[str]
+    finding: str = ""
+    urgency: Urgency = Urgency.NONE
+    causes: Listed[LikelyCause] = Field(default_factory=list)
+    parts: Listed[PartOfMotor] = Field(default_factory=list)
 
 
 class _Figures(Document):
@@ -122,44 +158,44 @@ class ConditionChange(_Figures):
     note_id: str | None = Field(validation_alias="event_id")
 
 
-class NoteRequest(RequestDocument):
-    """What a person tells of a motor. `time`: when it happened, by default now. `by`: by default who asks."""
+class NoteRequest(RequestForSomebody):
+    """What a person tells of a motor. `time`: when it happened, by default now."""
 
     kind: EventKind = EventKind.NOTE
     text: Reason
-    by: Person | None = None
     time: TimeParameter | None = None
 
 
-class RestartRequest(RequestDocument):
-    """Why the motor counts as healthy as it is. `time`: from when on, by default now. `by`: as of notes."""
+class RestartRequest(RequestForSomebody):
+    """Why the motor counts as healthy as it is. `time`: from when on, by default now."""
 
     reason: Reason
-    by: Person | None = None
     time: TimeParameter | None = None
 
 
-class Withdrawal(RequestDocument):
-    """Why a note was wrong. `by`: by default who asks."""
+class Withdrawal(RequestForSomebody):
+    """Why a note was wrong."""
 
     reason: Reason
-    by: Person | None = None
 
 
 class Note(Document):
     """What somebody told of a motor, or what its files tell.
 
-    It happened at `time`; `by` told it at `made_time`. The condition follows from all
-    but those of kind `note` and those that were withdrawn.
+    It happened at `time`; the account `by` told it at `made_time`, perhaps for somebody whom it named. by,
+    withdrawn_by: null where the account was not kept. The condition follows from all but those of kind `note`
+    and those that were withdrawn.
     """
 
     id: str
     motor: str
     kind: EventKind
     text: str = Field(validation_alias="reason")
-    by: str
+    by: str | None = Field(validation_alias="account")
+    on_behalf_of: str | None
     time: Time = Field(validation_alias="time_ns")
     made_time: Time = Field(validation_alias="made_ns")
     withdrawn_time: Time | None = Field(validation_alias="withdrawn_ns")
-    withdrawn_by: str | None
+    withdrawn_by: str | None = Field(validation_alias="withdrawn_account")
+    withdrawn_on_behalf_of: str | None
     withdrawn_reason: str | None

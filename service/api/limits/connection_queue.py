@@ -22,7 +22,8 @@ SERVED_AT_ONCE = 4
 LOOKED_AT_AT_ONCE = 256
 """Clients that had sent nothing are looked at again, so many in a turn."""
 
-URGENT = b"GET /healthz"
+URGENT = (b"GET /healthz", b"HEAD /health")
+"""First octets of such requests, of one length."""
 
 PAUSE_S = 1.0
 """Where this process may open nothing more."""
@@ -96,7 +97,7 @@ class ConnectionQueue:
         if first is None:
             self._silent.append(connection)
         else:
-            (self._urgent if first == URGENT else self._waiting).append(connection)
+            (self._urgent if first in URGENT else self._waiting).append(connection)
 
     def _schedule(self) -> None:
         if self._number() and not self._is_scheduled:
@@ -125,7 +126,7 @@ class ConnectionQueue:
 def _first_bytes(connection: socket.socket) -> bytes | None:
     """Return what a client has sent first, and leave it to be read; None where it has sent nothing."""
     try:
-        return connection.recv(len(URGENT), socket.MSG_PEEK)
+        return connection.recv(len(URGENT[0]), socket.MSG_PEEK)
     except (BlockingIOError, InterruptedError):
         return None
     except OSError:

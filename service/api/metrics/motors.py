@@ -72,7 +72,7 @@ class MotorMetrics(Collector):
         )
         change = _of_a_motor("fault_level_change_ratio", "Change of the fault level since the reference")
         detectable = _of_a_motor(
-            "fault_level_detectable_change_ratio", "Least change since the reference that would be seen"
+            "fault_level_detectable_change_ratio", "Detection limit of a change since the reference"
         )
         growth = _of_a_motor(
             "fault_level_growth_ratio_per_day", "Growth of the fault level per day, where it has a trend"

@@ -27,7 +27,7 @@ def get_baseline(context: Context, name: Name) -> Baseline:
 def set_baseline(context: Context, name: Name, wanted: BaselineRequest, caller: By) -> Baseline:
     """Replace a motor's baseline by recordings known to be healthy, for diagnoses from now on.
 
-    Recordings in doubt need a reason and who says so; both are kept, in a note of the motor too.
+    Recordings in doubt need a reason; it is kept with who asks, in a note of the motor too.
     """
     ids = sorted(str(one) for one in wanted.recording_ids)
     baseline = context.repository.set_baseline(
@@ -35,7 +35,7 @@ def set_baseline(context: Context, name: Name, wanted: BaselineRequest, caller: 
         ids,
         reason=wanted.reason,
         by=caller,
-        told_by=wanted.by,
+        on_behalf_of=wanted.on_behalf_of,
         now_ns=time.time_ns(),
     )
     return Baseline.model_validate(baseline)
@@ -52,7 +52,11 @@ def drop_baseline(
     name: Name,
     caller: By,
     reason: Annotated[Reason | None, Query(description="Why; it is kept.")] = None,
-    by: Annotated[Person | None, Query(description="Who says so; it is kept.")] = None,
+    on_behalf_of: Annotated[
+        Person | None, Query(description="Whom who asks does it for; it is kept beside their account.")
+    ] = None,
 ) -> None:
     """Delete a motor's baseline; its recordings stay, and a note of the motor keeps who did so and why."""
-    context.repository.delete_baseline(name, by=caller, reason=reason, told_by=by, now_ns=time.time_ns())
+    context.repository.delete_baseline(
+        name, by=caller, reason=reason, on_behalf_of=on_behalf_of, now_ns=time.time_ns()
+    )

@@ -16,7 +16,16 @@ from service.api.context import Context
 from service.api.document import Name
 from service.api.exports.answers import FILES, ListAnswer
 from service.api.motors.commissioning import offer
-from service.api.motors.schemas import Health, ListedMotor, Motor, RecordedStarts, Site, TrendPoint
+from service.api.motors.schemas import (
+    Health,
+    ListedMotor,
+    Motor,
+    PlantMotor,
+    RecordedStarts,
+    Site,
+    TrendPoint,
+    Winding,
+)
 from service.api.motors.trend_page import ConditionQuantity, trend_of_conditions, trend_of_recordings
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
@@ -62,8 +71,11 @@ def list_motors(
     "/motors/{name}", responses=problems(404), tags=["plant"], dependencies=[require(Permission.VIEW)]
 )
 def get_motor(context: Context, name: Name) -> Motor:
-    """Return one motor."""
-    return Motor.model_validate(context.repository.motor(name))
+    """Return one motor, with its stator winding where that is known."""
+    motor = PlantMotor.model_validate(context.repository.motor(name))
+    versions = context.repository.motor_versions(name)
+    winding = versions[-1].document.get("winding") if versions else None
+    return Motor(**motor.model_dump(), winding=None if winding is None else Winding.model_validate(winding))
 
 
 @router.get(

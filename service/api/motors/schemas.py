@@ -8,8 +8,9 @@ from pydantic import FailFast, Field
 from core.condition.kinds import Kind, State
 from core.diagnosis.verdict import Verdict
 from core.machines.parameters import ParametersSource
+from core.machines.stator_winding import WindingKind
 from service.api.conditions.schemas import Condition
-from service.api.document import Document, Listed, Person, Reason, RequestDocument
+from service.api.document import Document, Listed, Reason, RequestForSomebody
 from service.api.recordings.schemas import Recording
 from service.api.times import Time
 from service.storage.states import LinkState
@@ -20,12 +21,8 @@ class Site(Document):
     description: str
 
 
-class Motor(Document):
-    """A motor; `schedule`, a cron expression in UTC, says when it is recorded without anybody asking.
-
-    parameters_source: where its parameters come from: given in the motors file, commissioned from a recorded
-    start, from a data sheet, or typical of its rating. With typical ones the motor is on watch at most.
-    """
+class PlantMotor(Document):
+    """What lists and single motors share."""
 
     name: str
     description: str
@@ -33,6 +30,30 @@ class Motor(Document):
     ied: str
     schedule: str | None
     parameters_source: ParametersSource
+
+
+class Winding(Document):
+    """How a stator is wound, as the motors file has it.
+
+    kind: how the coils lie. slots: of the stator. layers: coil sides in a slot. coil_pitch_slots: slots from
+    side to side of a coil.
+    """
+
+    kind: WindingKind
+    slots: int
+    layers: int
+    coil_pitch_slots: int | None
+
+
+class Motor(PlantMotor):
+    """A motor; `schedule`, a cron expression in UTC, says when it is recorded without anybody asking.
+
+    parameters_source: where its parameters come from: given in the motors file, commissioned from a recorded
+    start, from a data sheet, or typical of its rating. With typical ones the motor is on watch at most.
+    winding: of its stator; null where the motors file does not tell it.
+    """
+
+    winding: Winding | None
 
 
 class RecordedStarts(Document):
@@ -79,7 +100,7 @@ class Health(Document):
     stood_time: Time | None
 
 
-class ListedMotor(Motor):
+class ListedMotor(PlantMotor):
     """A motor in a list, with its health where that was asked for."""
 
     health: Health | None = None
@@ -106,15 +127,14 @@ class TrendPoint(Document):
     phase: Literal["a", "b", "c"] | None = None
 
 
-class BaselineRequest(RequestDocument):
+class BaselineRequest(RequestForSomebody):
     """The recordings that stand for a motor's healthy condition.
 
-    reason, by: why they do, and who says so; needed where a recording is in doubt.
+    reason: why they do; needed where a recording is in doubt.
     """
 
     recording_ids: Annotated[set[UUID], Field(min_length=3, max_length=100), FailFast()]
     reason: Reason | None = None
-    by: Person | None = None
 
 
 class BaselineDoubt(Document):
@@ -127,11 +147,13 @@ class BaselineDoubt(Document):
 class Baseline(Document):
     """The motor's healthy recordings; empty where it has no baseline.
 
-    When they were chosen, why and by whom, where that was said, and which of them were in doubt.
+    When they were chosen, why, where that was said, and which of them were in doubt. by: the account that
+    chose them, null where it was not kept; on_behalf_of: whom it named.
     """
 
     recordings: Listed[Recording]
     chosen_time: Time | None = Field(validation_alias="chosen_ns")
     reason: str | None
-    by: str | None
+    by: str | None = Field(validation_alias="account")
+    on_behalf_of: str | None
     doubts: Listed[BaselineDoubt]

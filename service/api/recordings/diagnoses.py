@@ -7,6 +7,7 @@ from uuid import UUID
 
 from fastapi import APIRouter, Query, Request, Response
 
+from core.diagnosis.methods import resolved
 from service.access.permissions import Permission
 from service.api.access.callers import By
 from service.api.access.requirements import require
@@ -46,11 +47,12 @@ def request_diagnosis(
 
 def queue_diagnosis(context: ApiContext, by: Actor, recording_id: str, wanted: DiagnosisRequest) -> Job:
     """Queue another diagnosis and wake the runner. Raises NotFoundError, TooManyWaitingError."""
+    method, model = resolved(wanted.method, wanted.model)
     job = context.repository.request_diagnosis(
         recording_id,
         by=by,
-        method=wanted.method,
-        model=wanted.model,
+        method=method,
+        model=model,
         now_ns=time.time_ns(),
         most_queued=context.settings.max_queued_diagnoses,
     )

@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, ConfigDict, Field, StringConstraints
 
 from core.diagnosis import methods
+from core.diagnosis.causes import Cause
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
 from core.diagnosis.verdict import Verdict
 from core.operation import Operation
@@ -66,26 +67,46 @@ class Indicators(Document):
 class FittedParameters(Document):
     """The hypothesis that explains the currents best; `recordings/{recording_id}/model` draws it.
 
-    It is not the verdict: mu_f may lie within chance, or below zero.
+    It is not the verdict: mu_f may lie within chance, or below zero. leakage: of the shorted turns, 1 where
+    they have it to themselves. axis_rad: from the phase's axis to the coil's, positive as the field turns.
+    linkage: field that a turn of the coil links, over that of the phase's mean turn.
     """
 
     mu_f: float
     theta_f: Literal[0, 1, 2]
     load_level: float
     time_offset_s: float
-    path_ratio: float
+    leakage: float
+    axis_rad: float
+    linkage: float
+
+
+class Hypothesis(Document):
+    """One cause that the record's phasors were weighed for; the causes of a record exclude one another.
+
+    log_likelihood_ratio: log of the likelihood of the record with this cause over that of a healthy motor.
+    figure: what was measured of it, in words.
+    """
+
+    cause: Cause
+    probability: float
+    log_likelihood_ratio: float
+    figure: str
 
 
 class Diagnosis(Document):
     """The result for one recording, as `mcc diagnose --json` prints it.
 
     mu_f: equivalent fault level, fraction of the phase turns. theta_f: 0, 1, 2 = winding on terminals
-    a, b, c. load_level: load torque over rated torque. ..._ci95: 95 % interval from noise, sensors and
-    parameters. ..._scatter95: from the record's own scatter alone. speed_rpm: of the shaft, from the fit.
-    detection_limit: nine of ten such recordings show a fault of that mu_f. currents_only: the voltages are
-    assumed. operation: what the motor does in the recording. rotor, supply: what it shows of them.
-    classification: which causes are likely. eccentricity, pulsation: what it shows of the air gap, and of a
-    load that swings.
+    a, b, c; it and phase are null where no phase is named, which takes 0.95 of phase_probabilities.
+    load_level: load torque over rated torque. ..._ci95: 95 % interval from noise, sensors, parameters, and
+    what is not known of the turns. ..._scatter95: from the record's own scatter alone. speed_rpm: of the
+    shaft, from the fit. detection_limit: nine of ten such recordings show a fault of that mu_f.
+    currents_only: the voltages are assumed. operation: what the motor does in the recording.
+    phase_probabilities: that shorted turns, if there are any, lie in the winding on terminal a, b, c; null of
+    a motor with slip rings. hypotheses: the causes that the phasors were weighed for, the likeliest first.
+    rotor, supply: what it shows of them. classification: which causes are likely, by all that was examined.
+    eccentricity, pulsation: what it shows of the air gap, and of a load that swings.
     Diagnoses of earlier versions lack some: of those that knew only the scatter, ..._ci95 is null.
     """
 
@@ -112,6 +133,8 @@ class Diagnosis(Document):
     currents_only: bool = False
     operation: Operation | None = None
     fit: FittedParameters | None = None
+    phase_probabilities: tuple[float, float, float] | None = None
+    hypotheses: Listed[Hypothesis] = Field(default_factory=list)
     rotor: RotorFinding | None = None
     supply: SupplyFigures | None = None
     classification: Classification | None = None
@@ -144,7 +167,11 @@ class DiagnosisRun(Document):
 
 
 class DiagnosisRequest(RequestDocument):
-    """How to diagnose: the optimiser and the machine model."""
+    """How to diagnose: the method and the fault model.
+
+    A search goes with a model of the thesis: with `coil`, `split-winding` is taken. The evidence goes with
+    `coil`: with another model, `hybrid` is taken.
+    """
 
     model_config = ConfigDict(extra="forbid")
 

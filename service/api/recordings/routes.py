@@ -13,8 +13,10 @@ from fastapi import APIRouter, Depends, File, Form, Query, Request, Response, Up
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import StreamingResponse
 
+from core.machines.table_layout import layout_of
 from core.operation import Operation
 from core.recordings import Envelope, RecordingError, read_envelope
+from core.recordings.reading import recording_name
 from service.access.permissions import Permission
 from service.api.access.callers import By
 from service.api.access.requirements import require
@@ -110,7 +112,8 @@ async def upload_recording(
     files: Annotated[
         list[UploadFile],
         File(
-            description="COMTRADE: .CFG and .DAT, or .CFF; or a .CEV.",
+            description="COMTRADE: .CFG and .DAT, or .CFF; or a .CEV; or a table of samples (.CSV, .PARQUET, "
+            ".MAT, .H5, .TDMS, .NPY, .NPZ).",
             json_schema_extra={"maxItems": MAX_UPLOAD_FILES},
         ),
     ],
@@ -182,7 +185,7 @@ def _envelope(context: ApiContext, recording_id: str, points: int) -> Envelope:
     within = intervals_within(points, context.settings.max_waveform_values)
     try:
         with context.store.opened(_digest(entry)) as file:
-            envelope = read_envelope(file, within)
+            envelope = read_envelope(file, within, layout_of(context.motors.get(entry.motor)))
     except RecordingError as error:
         raise ProblemError(HTTPStatus.CONFLICT, f"the recording cannot be read: {error}") from error
     if entry.recorded_ns is None:
@@ -246,7 +249,7 @@ def _details(context: ApiContext, entry: RecordingEntry) -> RecordingDetails:
 def _store_upload(context: ApiContext, files: list[UploadFile]) -> StoredRecording:
     if len(files) > MAX_UPLOAD_FILES:
         raise _refused(f"expected at most {MAX_UPLOAD_FILES} files of one recording, found {len(files)}")
-    names = [file.filename or "" for file in files]
+    names = [recording_name(file.filename or "") for file in files]
     suffixes = sorted(PurePosixPath(name).suffix.upper() for name in names)
     for name, suffix in zip(names, (PurePosixPath(name).suffix.upper() for name in names), strict=True):
         if suffix not in UPLOAD_SUFFIXES:

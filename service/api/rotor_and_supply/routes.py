@@ -2,8 +2,8 @@
 
 from fastapi import APIRouter
 
+from core.rotor.advice import rotor_advice
 from service.access.permissions import Permission
-from service.alarms.rotor_rules import rotor_advice
 from service.api.access.requirements import require
 from service.api.context import Context
 from service.api.document import Name

@@ -1,7 +1,7 @@
 """Documents of parameters that are followed while motors run. Fields that are null are not known (yet)."""
 
+from core.tracking.advice import NOTHING_TO_DO, drift_advice
 from core.tracking.finding import DriftCause, ParameterName, TrackedParameters, TrackingState
-from service.alarms.drift_rules import NOTHING_TO_DO, drift_advice
 from service.api.document import Document, Listed
 from service.api.times import Time
 from service.storage.records import TrackedPoint

@@ -73,7 +73,7 @@ class CertificateSource:
         if decision is Decision.KEEP and not stands:
             return None
         verb = "ended" if left_days < 0.0 else "ends"
-        reason = f"{verb} {ends.astimezone(UTC):%Y-%m-%d %H:%M} UTC ({used})"
+        reason = f"{verb} {ends.astimezone(UTC):%Y-%m-%dT%H:%M:%S}Z ({used})"
         spec = _spec(subject, reason, AlarmPriority.HIGH if left_days <= URGENT_DAYS else None)
         return standing.finding(subject, AlarmPlace(), spec, decision, f"it {reason}")
 

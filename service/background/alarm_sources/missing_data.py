@@ -8,6 +8,7 @@ from service.alarms.kinds import AlarmKind
 from service.background.alarm_sources.standing import StandingAlarms
 from service.condition.staleness import stale_after_ns
 from service.configuration.settings import Settings
+from service.plant.schedule import Schedule
 from service.storage import Repository
 from service.storage.records import AlarmPlace, AlarmSpec
 from service.storage.records.alarm_sources import AlarmFinding, RecordOutlook
@@ -67,7 +68,7 @@ class MissingDataSource:
 
 
 def _told(motor: RecordOutlook) -> str:
-    schedule = "" if motor.schedule is None else f"; its schedule is {motor.schedule}"
+    schedule = "" if motor.schedule is None else f"; scheduled {Schedule(motor.schedule).in_words()}"
     if motor.as_of_ns is None:
         return f"there is no valid record yet{schedule}"
     return f"the latest valid record is of {rfc3339(motor.as_of_ns)[:19]}Z{schedule}"

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from core.units import NANOSECONDS_PER_SECOND
+from service.background.alarm_sources.attacks import AttackSource
 from service.background.alarm_sources.backups import BackupSource
 from service.background.alarm_sources.certificates import CertificateSource
 from service.background.alarm_sources.clocks import ClockSource
@@ -29,7 +30,7 @@ SLOW_PERIOD_S = 60.0
 
 
 class AlarmSources:
-    """Looks at links, clocks, records, disks, trips, certificates and back-ups, and gathers floods.
+    """Looks at links, clocks, records, disks, trips, certificates, back-ups and attacks, and gathers floods.
 
     What follows from ages waits while the wall clock of this host was set a short while ago.
     """
@@ -53,6 +54,7 @@ class AlarmSources:
         self._certificates = CertificateSource(settings, repository)
         self._backups = BackupSource(settings.backup, repository, started_ns)
         self._trips = TripSource(repository)
+        self._attacks = AttackSource(repository)
         self._wall_clock = WallClock()
         self._slow_period_s = slow_period_s
         self._next_slow_s: float | None = None
@@ -75,3 +77,4 @@ class AlarmSources:
             yield from self._records.findings(now_ns)
             yield from self._certificates.findings(now_ns)
             yield from self._backups.findings(now_ns)
+            yield from self._attacks.findings(now_ns)

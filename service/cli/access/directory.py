@@ -3,10 +3,10 @@
 The database is for who owns its files: they manage users without being one, which makes the first user.
 """
 
-import getpass
 import time
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol, cast
 
@@ -14,14 +14,19 @@ from sqlalchemy.exc import SQLAlchemyError
 
 from core.time_stamps import nanoseconds
 from service.access.bearer_secrets import digest_of, new_token
-from service.access.passwords import PASSWORD_RULE, hashed, is_usable
+from service.access.passwords import UnusablePasswordError, new_hash
+from service.access.second_factors import digest_of_code, new_recovery_codes
+from service.access.tokens import TokenLifetimeError, as_it_counts, end_of
 from service.access.user_names import NAME_RULE, name_of
 from service.api.access.schemas import Token, User
+from service.cli.audit.actor import command_line_actor
 from service.cli.output import CommandError, failing_clearly
 from service.client.rest_client import Document, ServiceClient, ServiceError
+from service.configuration.access import AccessSettings
 from service.configuration.settings import Settings, SettingsError
+from service.process.private_files import written_privately
 from service.storage import Repository, StorageError, connect, migrate
-from service.storage.records import Actor, Role
+from service.storage.records import ApiToken, Role
 from service.storage.records import User as StoredUser
 
 if TYPE_CHECKING:
@@ -56,7 +61,11 @@ class Directory(Protocol):
         ...
 
     def end_sessions(self, name: str) -> None:
-        """End all sessions of a user."""
+        """End all sessions and all tokens of a user."""
+        ...
+
+    def reset_second_factor(self, name: str) -> str:
+        """Remove a user's second factor; return the code that lets them in once."""
         ...
 
     def delete_user(self, name: str) -> None:
@@ -70,11 +79,18 @@ class Directory(Protocol):
     def add_token(
         self, user: str | None, label: str, scope: Collection[str] | None, expires_time: str | None
     ) -> Document:
-        """Make a token, of who asks or of another user; the answer has its secret."""
+        """Make a token of who asks, or in the database of a user whom nobody can log in as.
+
+        The answer has its secret.
+        """
         ...
 
     def revoke_token(self, token_id: str) -> None:
         """End a token."""
+        ...
+
+    def revoke_tokens(self, user: str | None) -> None:
+        """End all tokens of a user, or of who asks."""
         ...
 
 
@@ -88,13 +104,13 @@ def directory(url: str, config: Path | None, *, local: bool) -> Iterator[Directo
         with failing_clearly(ServiceError), ServiceClient(url) as service:
             yield _AtService(service)
         return
-    with failing_clearly(SettingsError, StorageError, SQLAlchemyError, OSError):
+    with written_privately(), failing_clearly(SettingsError, StorageError, SQLAlchemyError, OSError):
         settings = Settings.load(config)
         settings.data_directory.mkdir(parents=True, exist_ok=True)
         migrate(settings.database_url)
         engine = connect(settings.database_url)
         try:
-            yield _InDatabase(Repository(engine))
+            yield _InDatabase(Repository(engine), settings.access)
         finally:
             engine.dispose()
 
@@ -130,6 +146,9 @@ class _AtService:
     def end_sessions(self, name: str) -> None:
         self._service.end_sessions(name)
 
+    def reset_second_factor(self, name: str) -> str:
+        return self._service.reset_second_factor(name)["code"]
+
     def delete_user(self, name: str) -> None:
         self._service.delete_user(name)
 
@@ -141,9 +160,12 @@ class _AtService:
     ) -> Document:
         words = None if scope is None else cast("list[Permission]", sorted(scope))
         wanted: TokenRequest = {"label": label, "scope": words, "expires_time": expires_time}
-        if user is None:
-            return self._service.add_own_token(wanted)
-        return self._service.add_token(user, wanted)
+        if user is not None:
+            raise CommandError(
+                "--user: expected --config or --local beside it: users make their own tokens (mcc login, "
+                "mcc token add LABEL), and only the owner of the service's files makes those of programs"
+            )
+        return self._service.add_own_token(wanted)
 
     def revoke_token(self, token_id: str) -> None:
         if self._manages():
@@ -151,14 +173,21 @@ class _AtService:
         else:
             self._service.revoke_own_token(token_id)
 
+    def revoke_tokens(self, user: str | None) -> None:
+        if user is None:
+            self._service.revoke_own_tokens()
+        else:
+            self._service.revoke_tokens(user)
+
     def _manages(self) -> bool:
         return "users" in self._service.get_account()["permissions"]
 
 
 class _InDatabase:
-    def __init__(self, repository: Repository) -> None:
+    def __init__(self, repository: Repository, access: AccessSettings) -> None:
         self._repository = repository
-        self._by = Actor(getpass.getuser(), "command line", frozenset({Role.SECADM}))
+        self._access = access
+        self._by = replace(command_line_actor(), roles=frozenset({Role.SECADM}))
 
     def users(self) -> list[Document]:
         found = self._repository.users(limit=AT_ONCE)
@@ -174,7 +203,7 @@ class _InDatabase:
         proper = name_of(name)
         if proper is None:
             raise CommandError(f"NAME: expected {NAME_RULE}, found {name!r}")
-        kept = None if password is None else _hashed(password, proper)
+        kept = None if password is None else _hashed(password, proper, full_name)
         user = self._repository.add_user(
             proper, roles, password=kept, full_name=full_name, by=self._by, now_ns=time.time_ns()
         )
@@ -193,13 +222,21 @@ class _InDatabase:
         return _user(user)
 
     def set_password(self, name: str, password: str) -> None:
-        self._repository.set_password(name, _hashed(password, name), by=self._by, now_ns=time.time_ns())
+        present = self._repository.password_to_change(name, by=self._by)
+        kept = _hashed(password, name, self._repository.user(name).full_name, present)
+        self._repository.set_password(name, kept, by=self._by, now_ns=time.time_ns())
 
     def unlock(self, name: str) -> None:
         self._repository.unlock_user(name, by=self._by, now_ns=time.time_ns())
 
     def end_sessions(self, name: str) -> None:
         self._repository.end_sessions_of(name, by=self._by, now_ns=time.time_ns())
+
+    def reset_second_factor(self, name: str) -> str:
+        (code,) = new_recovery_codes(1)
+        digest = digest_of_code(code)
+        self._repository.reset_second_factor(name, digest, by=self._by, now_ns=time.time_ns())
+        return code
 
     def delete_user(self, name: str) -> None:
         self._repository.delete_user(name, by=self._by, now_ns=time.time_ns())
@@ -210,33 +247,46 @@ class _InDatabase:
         while found.next is not None:
             found = self._repository.tokens(user=None, limit=AT_ONCE, after=found.next)
             tokens.extend(found.items)
-        return [Token.model_validate(token).model_dump(mode="json") for token in tokens]
+        return [_token(token, self._access) for token in tokens]
 
     def add_token(
         self, user: str | None, label: str, scope: Collection[str] | None, expires_time: str | None
     ) -> Document:
         if user is None:
             raise CommandError("--user: expected whose token it is, which --config and --local do not tell")
-        secret = new_token()
+        secret, now_ns = new_token(), time.time_ns()
+        wanted_ns = None if expires_time is None else nanoseconds(expires_time)
+        with failing_clearly(TokenLifetimeError):
+            expires_ns = end_of(wanted_ns, self._access, parent=None, now_ns=now_ns)
         token = self._repository.add_token(
             user,
             label,
             digest_of(secret),
             scope=scope,
-            expires_ns=None if expires_time is None else nanoseconds(expires_time),
+            expires_ns=expires_ns,
             by=self._by,
-            now_ns=time.time_ns(),
+            now_ns=now_ns,
         )
-        return {**Token.model_validate(token).model_dump(mode="json"), "token": secret}
+        return {**_token(token, self._access), "token": secret}
 
     def revoke_token(self, token_id: str) -> None:
         self._repository.revoke_token(token_id, user=None, by=self._by, now_ns=time.time_ns())
 
+    def revoke_tokens(self, user: str | None) -> None:
+        if user is None:
+            raise CommandError("--user: expected whose tokens end, which --config and --local do not tell")
+        self._repository.revoke_tokens(user, by=self._by, now_ns=time.time_ns())
 
-def _hashed(password: str, name: str) -> str:
-    if not is_usable(password, name):
-        raise CommandError(f"expected {PASSWORD_RULE}; nothing was changed")
-    return hashed(password)
+
+def _hashed(password: str, name: str, full_name: str | None, present: str | None = None) -> str:
+    try:
+        return new_hash(password, name, full_name=full_name, present=present)
+    except UnusablePasswordError as error:
+        raise CommandError(f"{error}; nothing was changed") from error
+
+
+def _token(token: ApiToken, access: AccessSettings) -> Document:
+    return Token.model_validate(as_it_counts(token, access)).model_dump(mode="json")
 
 
 def _user(user: StoredUser) -> Document:

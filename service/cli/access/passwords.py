@@ -29,6 +29,20 @@ def given_password(file: str | None, prompt: str, *, again: bool) -> str:
     return password
 
 
+def given_code(file: str | None, prompt: str, *, asked: bool) -> str | None:
+    """Return a code of a second factor: the first line of a file, or what somebody types; None for none.
+
+    asked: whether to ask for one where there is no file. Raises CommandError.
+    """
+    if file is not None:
+        return _first_line(file)
+    if not asked:
+        return None
+    sys.stderr.write(f"{prompt}: ")
+    sys.stderr.flush()
+    return sys.stdin.readline(MOST_BYTES).strip() or None
+
+
 def _first_line(file: str) -> str:
     try:
         if file == STANDARD_INPUT:

@@ -14,7 +14,7 @@ from service.cli.output import failing_clearly, print_document, progress, result
 from service.cli.rows import print_rows
 from service.client.credentials import write_secret
 from service.client.rest_client import Document
-from service.client.verdicts import to_the_second
+from service.client.verdicts import local_time
 
 FIELDS = ("id", "user", "label", "scope", "created_time", "expires_time", "used_time")
 
@@ -25,7 +25,7 @@ def _scope(token: Document) -> str:
 
 
 def _time(key: str) -> Callable[[Document], str]:
-    return lambda token: "never" if token[key] is None else to_the_second(token[key])
+    return lambda token: "never" if token[key] is None else local_time(token[key])
 
 
 COLUMNS: Mapping[str, Callable[[Document], str | Text]] = {
@@ -80,10 +80,21 @@ def add_token(
 
 
 def revoke_token(url: str, config: Path | None, token_id: str, *, local: bool, as_json: bool) -> None:
-    """End a token. Raises CommandError."""
+    """End a token, and those that were made with it. Raises CommandError."""
     with directory(url, config, local=local) as users:
         users.revoke_token(token_id)
     if as_json:
         print_document({})
     else:
         results().print(Text(one_line(f"token {token_id}: revoked")), soft_wrap=True)
+
+
+def revoke_tokens(url: str, config: Path | None, *, user: str | None, local: bool, as_json: bool) -> None:
+    """End all tokens of a user, by default the own ones. Raises CommandError."""
+    with directory(url, config, local=local) as users:
+        users.revoke_tokens(user)
+    if as_json:
+        print_document({})
+    else:
+        whose = "your" if user is None else f"user {user}: all"
+        results().print(Text(one_line(f"{whose} tokens have ended")), soft_wrap=True)

@@ -11,7 +11,7 @@ from service.cli.access.passwords import given_password
 from service.cli.output import CommandError, print_document, results
 from service.cli.rows import print_rows
 from service.client.rest_client import Document
-from service.client.verdicts import to_the_second
+from service.client.verdicts import local_time
 from service.storage.records import Role
 
 FIELDS = ("name", "full_name", "roles", "disabled", "has_password", "last_login_time", "last_login_origin")
@@ -30,7 +30,7 @@ def _state(user: Document) -> str:
     if user["disabled"]:
         return "disabled"
     if user.get("locked_until_time"):
-        return f"locked until {to_the_second(user['locked_until_time'])}"
+        return f"locked until {local_time(user['locked_until_time'])}"
     return "password" if user["has_password"] else "tokens only" if user["subject"] is None else "sign-on"
 
 
@@ -40,7 +40,7 @@ COLUMNS: Mapping[str, Callable[[Document], str | Text]] = {
     "roles": _roles,
     "logs in": _state,
     "last login": lambda user: (
-        "-" if user["last_login_time"] is None else to_the_second(user["last_login_time"])
+        "-" if user["last_login_time"] is None else local_time(user["last_login_time"])
     ),
     "from": _words("last_login_origin"),
 }
@@ -71,7 +71,11 @@ def add_user(
     password = None if no_password else given_password(password_file, f"password of {name}", again=True)
     with directory(url, config, local=local) as users:
         user = users.add_user(name, roles, full_name, password)
-    told = "has no password, and may have tokens" if no_password else "may log in (mcc login)"
+    told = "may log in (mcc login)"
+    if no_password:
+        told = "has no password; tokens are made on the service's machine (mcc token add --user --config)"
+    elif user["password_set_by"] is not None:
+        told = "may log in (mcc login), and changes the password first (mcc password)"
     _say(f"user {user['name']}: {_roles(user)}; {told}", user, as_json=as_json)
 
 
@@ -105,7 +109,7 @@ def set_password(
     password = given_password(password_file, f"new password of {name}", again=True)
     with directory(url, config, local=local) as users:
         users.set_password(name, password)
-    _say(f"user {name}: has another password; all their sessions have ended", {}, as_json=as_json)
+    _say(f"user {name}: password changed; all their sessions and tokens have ended", {}, as_json=as_json)
 
 
 def unlock_user(url: str, config: Path | None, name: str, *, local: bool, as_json: bool) -> None:
@@ -119,7 +123,16 @@ def end_sessions(url: str, config: Path | None, name: str, *, local: bool, as_js
     """End all sessions of a user. Raises CommandError."""
     with directory(url, config, local=local) as users:
         users.end_sessions(name)
-    _say(f"user {name}: all sessions have ended; tokens stay (mcc token list)", {}, as_json=as_json)
+    _say(f"user {name}: all sessions and tokens have ended", {}, as_json=as_json)
+
+
+def reset_second_factor(url: str, config: Path | None, name: str, *, local: bool, as_json: bool) -> None:
+    """Remove a user's second factor, and print the code that lets them in once. Raises CommandError."""
+    with directory(url, config, local=local) as users:
+        code = users.reset_second_factor(name)
+    ended = "all their sessions and tokens have ended"
+    told = f"user {name}: has no second factor now; {ended}; code for one login: {code}"
+    _say(told, {"code": code}, as_json=as_json)
 
 
 def delete_user(url: str, config: Path | None, name: str, *, local: bool, as_json: bool) -> None:

@@ -9,7 +9,7 @@ from core.error_words import one_line
 from service.cli.output import failing_clearly, print_document, results
 from service.client.rest_client import Document, ServiceClient, ServiceError
 from service.client.tables import FittedTable
-from service.client.verdicts import to_the_second
+from service.client.verdicts import local_time
 
 
 def show_figures(url: str, *, days: int, as_json: bool) -> None:
@@ -20,7 +20,8 @@ def show_figures(url: str, *, days: int, as_json: bool) -> None:
         print_document(figures)
         return
     console = results()
-    console.print(Text(f"{figures['calls_per_day']:.1f} alarms a day since {figures['from_time']}"))
+    since = local_time(figures["from_time"])
+    console.print(Text(f"{figures['calls_per_day']:.1f} alarms a day since {since}"))
     states = figures["open"]
     if isinstance(states, dict) and states:
         console.print(Text("open: " + ", ".join(f"{number} {state}" for state, number in states.items())))
@@ -33,7 +34,7 @@ def show_figures(url: str, *, days: int, as_json: bool) -> None:
         rows = [[one["calls"], _where(one), one["kind"], one["subject"]] for one in _documents(figures[key])]
         _print_table(title, ("calls", "where", "what", "subject"), rows)
     long = [
-        [to_the_second(one["raised_time"]), _where(one), one["kind"], one["state"], one["id"]]
+        [local_time(one["raised_time"]), _where(one), one["kind"], one["state"], one["id"]]
         for one in _documents(figures["standing_long"])
     ]
     title = f"standing for longer than a day ({figures['standing_long_in_all']} in all)"
@@ -45,7 +46,7 @@ def _print_table(title: str, headings: Sequence[str], rows: Sequence[Sequence[ob
         return
     table = FittedTable(title=Text(title), title_justify="left", box=SIMPLE_HEAD, collapse_padding=True)
     for heading in headings:
-        table.add_column(heading, no_wrap=heading in {"day", "id"})
+        table.add_column(heading, no_wrap=heading == "day")
     for row in rows:
         table.add_row(*(Text(one_line(str(cell))) for cell in row))
     results().print(table)

@@ -13,7 +13,7 @@ from service.cli.alarms.choosing import whole_id
 from service.cli.output import WRONG_USE, CommandError, failing_clearly, print_document, results
 from service.cli.rows import print_rows, require_one_format
 from service.client.rest_client import Document, ServiceClient, ServiceError
-from service.client.verdicts import percent, to_the_second
+from service.client.verdicts import local_time, local_times, percent
 
 FIELDS = (
     "priority", "state", "standing", "raised_time", "cleared_time", "site", "ied", "motor", "kind", "subject",
@@ -84,10 +84,10 @@ def show_alarm(url: str, alarm_id: str, *, as_json: bool) -> None:
         return
     print_alarm(alarm)
     for words in (alarm["cause"], alarm["consequence"]):
-        results().print(Padding(Text(one_line(str(words)), overflow="fold"), (0, 0, 0, 4), expand=False))
+        results().print(Padding(Text(local_times(words), overflow="fold"), (0, 0, 0, 4), expand=False))
     results().print()
     columns = {
-        "time": lambda change: to_the_second(change["time"]),
+        "time": lambda change: local_time(change["time"]),
         "what": lambda change: str(change["event"]),
         "state": lambda change: str(change["after"]),
         "by": lambda change: str(change["by"]),
@@ -104,17 +104,15 @@ def print_alarm(alarm: Document) -> None:
     line.append(f"  {one_line(str(where))}: {alarm['kind']}, {_since(alarm)}", style="default not bold")
     console.print(line)
     for words in _details(alarm):
-        console.print(Padding(Text(one_line(words), overflow="fold"), (0, 0, 0, 4), expand=False))
+        console.print(Padding(Text(local_times(words), overflow="fold"), (0, 0, 0, 4), expand=False))
 
 
 def _since(alarm: Document) -> str:
     """Return since when the cause stands, and until when it stood."""
-    since = f"since {to_the_second(alarm['raised_time'])}"
+    since = f"since {local_time(alarm['raised_time'])}"
     if isinstance(alarm["raises"], int) and alarm["raises"] > 1:
         since += f" ({alarm['raises']} times)"
-    return (
-        since if alarm["cleared_time"] is None else f"{since}, until {to_the_second(alarm['cleared_time'])}"
-    )
+    return since if alarm["cleared_time"] is None else f"{since}, until {local_time(alarm['cleared_time'])}"
 
 
 def _details(alarm: Document) -> Iterator[str]:
@@ -126,7 +124,7 @@ def _details(alarm: Document) -> Iterator[str]:
 def _what_was_done(alarm: Document) -> str | None:
     """Return what somebody, or the plant's design, has made of an alarm."""
     said = "" if alarm["comment"] is None else f": {alarm['comment']}"
-    by = f"by {alarm['changed_by']} {to_the_second(alarm['changed_time'])}"
+    by = f"by {alarm['changed_by']} {local_time(alarm['changed_time'])}"
     match alarm["state"]:
         case "acknowledged":
             return f"acknowledged {by}{said}"
@@ -142,7 +140,7 @@ def _what_was_done(alarm: Document) -> str | None:
 def _ends(alarm: Document) -> Sequence[str]:
     ends = []
     if alarm["shelved_until"] is not None:
-        ends.append(to_the_second(alarm["shelved_until"]))
+        ends.append(local_time(alarm["shelved_until"]))
     if alarm["shelved_above"] is not None:
         ends.append(f"its level is above {percent(alarm['shelved_above'])} %")
     return ends

@@ -3,7 +3,7 @@
 import getpass
 import os
 
-from service.storage.records import Actor
+from service.storage.records import COMMAND_LINE, Actor
 
 
 def command_line_actor() -> Actor:
@@ -12,4 +12,4 @@ def command_line_actor() -> Actor:
         name = getpass.getuser()
     except (KeyError, OSError):
         name = f"user {os.getuid()}"
-    return Actor(name, "command line")
+    return Actor(name, COMMAND_LINE)

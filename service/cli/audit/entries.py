@@ -18,7 +18,7 @@ from service.audit.entries import AuditEntry
 from service.cli.output import CommandError, failing_clearly
 from service.cli.rows import Column, print_rows, require_one_format
 from service.client.rest_client import Document, ServiceClient, ServiceError
-from service.client.verdicts import to_the_second
+from service.client.verdicts import local_time
 from service.configuration.settings import Settings, SettingsError
 from service.storage import Repository, StorageError, connect
 from service.storage.migrations import require_current_tables
@@ -31,7 +31,7 @@ FIELDS = (
 )
 COLUMNS: Mapping[str, Column] = {
     "number": lambda row: str(row["number"]),
-    "time": lambda row: to_the_second(row["time"]),
+    "time": lambda row: local_time(row["time"]),
     "who, from": lambda row: _lines(row["actor"], row["origin"]),
     "what, of what, before -> after": lambda row: _lines(
         row["action"], f"{row['subject_kind']} {row['subject']}", _change(row)

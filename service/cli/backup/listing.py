@@ -8,6 +8,7 @@ from sqlalchemy.exc import SQLAlchemyError
 
 from core.error_words import one_line
 from core.time_stamps import rfc3339
+from core.time_words import clock
 from service.cli.output import failing_clearly, print_document, results
 from service.client.tables import FittedTable
 from service.configuration.settings import Settings, SettingsError
@@ -39,7 +40,7 @@ def list_backups(config: Path | None, *, as_json: bool) -> None:
         table.add_column(heading, no_wrap=heading in ("began", "state"))
     for one in found:
         table.add_row(
-            rfc3339(one.began_ns)[:19] + "Z",
+            clock(one.began_ns, None, seconds=True),
             Text(str(one.state)),
             Text(_where(one)),
             "-" if one.recordings is None else str(one.recordings),

@@ -17,6 +17,12 @@ PasswordFile = Annotated[
     str | None,
     typer.Option(metavar="FILE", help="Its first line is the password; - for the standard input."),
 ]
+CodeFile = Annotated[
+    str | None,
+    typer.Option(
+        metavar="FILE", help="Its first line is the code of the second factor; - for the standard input."
+    ),
+]
 Config = Annotated[
     Path | None,
     typer.Option(metavar="FILE", help="Work in the database of this settings file, as its owner may."),
@@ -33,13 +39,14 @@ def login(
         str | None, typer.Option(metavar="NAME", help="Who logs in (default: as on this machine).")
     ] = None,
     password_file: PasswordFile = None,
+    code_file: CodeFile = None,
     *,
     as_json: Json = False,
 ) -> None:
     """Log in at a service; the commands that follow say who asks, until mcc logout or the session's end."""
     from service.cli.access.login import log_in
 
-    log_in(url, name, password_file=password_file, as_json=as_json)
+    log_in(url, name, password_file=password_file, code_file=code_file, as_json=as_json)
 
 
 @commands.command()
@@ -70,10 +77,53 @@ def password(
     *,
     as_json: Json = False,
 ) -> None:
-    """Change your own password; all your sessions end."""
+    """Change your own password; all your sessions and tokens end."""
     from service.cli.access.login import change_password
 
     change_password(url, old_file=old_file, new_file=new_file, as_json=as_json)
+
+
+factor = typer.Typer(
+    help="Your second factor: an authenticator app, and recovery codes.", no_args_is_help=True
+)
+commands.add_typer(factor, name="second-factor")
+
+
+@factor.command("set-up")
+def set_up_second_factor(
+    url: Url = DEFAULT_URL,
+    password_file: PasswordFile = None,
+    code_file: Annotated[
+        str | None,
+        typer.Option(metavar="FILE", help="Its first line is a code of the app; - for the standard input."),
+    ] = None,
+    *,
+    as_json: Json = False,
+) -> None:
+    """Set up an authenticator app, and print recovery codes; log in before (mcc login)."""
+    from service.cli.access.second_factor import set_up
+
+    set_up(url, password_file=password_file, code_file=code_file, as_json=as_json)
+
+
+@factor.command("codes")
+def make_recovery_codes(
+    url: Url = DEFAULT_URL, password_file: PasswordFile = None, *, as_json: Json = False
+) -> None:
+    """Print other recovery codes; the old ones count no more."""
+    from service.cli.access.second_factor import make_codes
+
+    make_codes(url, password_file=password_file, as_json=as_json)
+
+
+@factor.command("remove")
+def remove_second_factor(
+    url: Url = DEFAULT_URL, password_file: PasswordFile = None, *, as_json: Json = False
+) -> None:
+    """Remove your second factor, where no role of yours needs one."""
+    from service.cli.access.second_factor import remove
+
+    remove(url, password_file=password_file, as_json=as_json)
 
 
 user = typer.Typer(help="Make, change and delete users.", no_args_is_help=True)
@@ -110,7 +160,10 @@ def add_user(
     local: Local = False,
     as_json: Json = False,
 ) -> None:
-    """Make a user; the password is asked for. The first one is made with --config FILE."""
+    """Make a user; the password is asked for, and they change it first.
+
+    The first user, and those with the role SECAUD, are made with --config FILE.
+    """
     from service.cli.access.users import add_user
 
     add_user(
@@ -141,7 +194,10 @@ def change_user(
     local: Local = False,
     as_json: Json = False,
 ) -> None:
-    """Give a user other roles or another full name, or keep them out; other roles end their sessions."""
+    """Give a user other roles or another full name, or keep them out; other roles end their sessions.
+
+    The role SECAUD is given with --config FILE, and the user then needs a new password.
+    """
     from service.cli.access.users import change_user
 
     change_user(
@@ -167,7 +223,7 @@ def set_password(
     local: Local = False,
     as_json: Json = False,
 ) -> None:
-    """Give a user another password, which ends their sessions."""
+    """Change a user's password, which ends their sessions and tokens; they change it first."""
     from service.cli.access.users import set_password
 
     set_password(url, config, name, password_file=password_file, local=local, as_json=as_json)
@@ -187,10 +243,20 @@ def unlock_user(
 def end_sessions(
     name: Name, url: Url = DEFAULT_URL, config: Config = None, *, local: Local = False, as_json: Json = False
 ) -> None:
-    """End all sessions of a user."""
+    """End all sessions and tokens of a user."""
     from service.cli.access.users import end_sessions
 
     end_sessions(url, config, name, local=local, as_json=as_json)
+
+
+@user.command("reset-second-factor")
+def reset_second_factor(
+    name: Name, url: Url = DEFAULT_URL, config: Config = None, *, local: Local = False, as_json: Json = False
+) -> None:
+    """Remove a user's second factor, and print a code that stands for it at one login."""
+    from service.cli.access.users import reset_second_factor
+
+    reset_second_factor(url, config, name, local=local, as_json=as_json)
 
 
 @user.command("delete")
@@ -227,13 +293,17 @@ def add_token(
     label: Annotated[str, typer.Argument(metavar="LABEL", help="What it is for.")],
     url: Url = DEFAULT_URL,
     config: Config = None,
-    user: Annotated[str | None, typer.Option(metavar="NAME", help="Whose it is (default: yours).")] = None,
+    user: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="A user whom nobody can log in as, with --config or --local."),
+    ] = None,
     scope: Annotated[
         list[str] | None,
-        typer.Option(metavar="PERMISSION", help="A permission it has (default: all of its user)."),
+        typer.Option(metavar="PERMISSION", help="A permission it has (default: all that you have)."),
     ] = None,
     days: Annotated[
-        float | None, typer.Option(min=0.001, max=36_500, help="So long it is taken (default: for ever).")
+        float | None,
+        typer.Option(min=0.001, max=36_500, help="So long it is taken (default: as long as it may)."),
     ] = None,
     output: Annotated[
         Path | None,
@@ -275,7 +345,24 @@ def revoke_token(
     local: Local = False,
     as_json: Json = False,
 ) -> None:
-    """End a token."""
+    """End a token, and those that were made with it."""
     from service.cli.access.tokens import revoke_token
 
     revoke_token(url, config, token_id, local=local, as_json=as_json)
+
+
+@token.command("revoke-all")
+def revoke_tokens(
+    url: Url = DEFAULT_URL,
+    config: Config = None,
+    user: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Whose tokens end (default: yours).")
+    ] = None,
+    *,
+    local: Local = False,
+    as_json: Json = False,
+) -> None:
+    """End all tokens of a user."""
+    from service.cli.access.tokens import revoke_tokens
+
+    revoke_tokens(url, config, user=user, local=local, as_json=as_json)

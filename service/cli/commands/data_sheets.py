@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from core.commissioning.data_sheet import Unit, Values
+from core.machines.stator_winding import WindingKind
 from service.cli.commands.options import Json
 
 commands = typer.Typer()
@@ -69,11 +70,30 @@ def parameters(
     inertia: Annotated[
         Figure, typer.Option(metavar="KGM2", help="Of motor and load (default: typical of the rating).")
     ] = None,
+    winding: Annotated[
+        WindingKind | None,
+        typer.Option(help="How the coils of the stator lie, from a winder's sheet. Needs --slots."),
+    ] = None,
+    slots: Annotated[int | None, typer.Option(metavar="NUMBER", help="Slots of the stator.")] = None,
+    layers: Annotated[
+        int | None,
+        typer.Option(min=1, max=2, metavar="NUMBER", help="Coil sides in a slot, 1 or 2 (default: 2)."),
+    ] = None,
+    coil_pitch: Annotated[
+        int | None,
+        typer.Option(
+            metavar="SLOTS", help="From side to side of a coil: 8 for a span of 1 to 9 (default: unknown)."
+        ),
+    ] = None,
     *,
     as_json: Json = False,
 ) -> None:
-    """Turn a data sheet's impedances or a catalogue's figures into a motor's parameters, with intervals."""
+    """Turn a data sheet's impedances or a catalogue's figures into a motor's parameters, with intervals.
+
+    A stator winding (--winding, --slots) may be given beside them, or alone: the parameters then stay.
+    """
     from service.cli.plant.parameters import DataSheet, parameters_of_data_sheet
+    from service.cli.plant.windings import WinderSheet
 
     sheet = DataSheet(
         r1=r1,
@@ -94,5 +114,6 @@ def parameters(
         locked_rotor_torque=locked_rotor_torque,
         breakdown_torque=breakdown_torque,
         inertia_kgm2=inertia,
+        winding=WinderSheet(winding, slots, layers, coil_pitch),
     )
     parameters_of_data_sheet(sheet, nameplate, output, as_json=as_json)

@@ -28,6 +28,50 @@ def finite_seconds(wait: float) -> float:
     return wait
 
 
+def _finite(number: float | None) -> float | None:
+    if number is not None and not isfinite(number):
+        raise typer.BadParameter(f"expected a number, found {number}")
+    return number
+
+
+def _scale(number: float | None) -> float | None:
+    if number == 0.0:
+        raise typer.BadParameter("expected a number other than zero")
+    return _finite(number)
+
+
+TableColumn = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--column",
+        metavar="QUANTITY=NAME",
+        help="A column of a table: ia, ib, ic, va, vb, vc or vab, vbc, vca, such as ia='Channel A'; for "
+        "all three phases. Default: [channels] of the motor file, else by names and units.",
+    ),
+]
+TableRate = Annotated[
+    float | None,
+    typer.Option(
+        "--rate", metavar="HZ", min=1.0, callback=_finite, help="Sampling rate of a table that has no times."
+    ),
+]
+CurrentScale = Annotated[
+    float | None,
+    typer.Option("--current-scale", metavar="A", callback=_scale, help="Amperes of one as a table has it."),
+]
+CurrentOffset = Annotated[
+    float | None,
+    typer.Option("--current-offset", metavar="A", callback=_finite, help="Amperes added to a table's."),
+]
+VoltageScale = Annotated[
+    float | None,
+    typer.Option("--voltage-scale", metavar="V", callback=_scale, help="Volts of one as a table has it."),
+]
+VoltageOffset = Annotated[
+    float | None,
+    typer.Option("--voltage-offset", metavar="V", callback=_finite, help="Volts added to a table's."),
+]
+
 VerdictWait = Annotated[
     float,
     typer.Option(

@@ -12,24 +12,35 @@ commands = typer.Typer()
 
 @commands.command()
 def init(
-    directory: Annotated[Path, typer.Argument(metavar="DIR", help="The folder of the new plant.")],
+    directory: Annotated[
+        Path | None, typer.Argument(metavar="DIR", help="The folder of the new plant.")
+    ] = None,
     sources: Annotated[
         list[str] | None,
         typer.Argument(
             metavar="SOURCE...",
-            help="An SCD; or a CID, IID or ICD of each relay; or addresses (HOST or HOST:PORT), "
-            "or a text file that lists them.",
+            help="A list of motors (CSV or Excel); or an SCD; or a CID, IID or ICD of each relay; or "
+            "addresses (HOST or HOST:PORT), or a text file that lists them.",
         ),
     ] = None,
     *,
+    template: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Write an empty list of motors (.csv or .xlsx), and stop."),
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """Write the files of a new plant to fill in: settings, and a motors file with its relays.
 
     Relays whose addresses are given are asked what they are. Nothing is written over, nothing is triggered.
     """
-    from service.cli.plant.init import init_plant
+    from service.cli.plant.init import init_plant, write_template
 
+    if template is not None and directory is None:
+        write_template(template, as_json=as_json)
+        return
+    if directory is None or template is not None:
+        raise typer.BadParameter("expected the folder of the new plant, or --template FILE alone")
     init_plant(directory, sources or [], as_json=as_json)
 
 

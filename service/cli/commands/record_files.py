@@ -8,7 +8,17 @@ from typing import Annotated
 import typer
 
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL, Method, Model
-from service.cli.commands.options import DEFAULT_URL, Json, Url
+from service.cli.commands.options import (
+    DEFAULT_URL,
+    CurrentOffset,
+    CurrentScale,
+    Json,
+    TableColumn,
+    TableRate,
+    Url,
+    VoltageOffset,
+    VoltageScale,
+)
 from service.process.garbage_collection import collection_paused
 
 commands = typer.Typer()
@@ -28,7 +38,9 @@ def diagnose(
     record: Annotated[
         Path,
         typer.Argument(
-            metavar="RECORD", help="COMTRADE (.CFG beside its .DAT, or .CFF) or an SEL event report (.CEV)."
+            metavar="RECORD",
+            help="COMTRADE (.CFG beside its .DAT, or .CFF), an SEL event report (.CEV), or a table of "
+            "samples (.csv, .parquet, .mat, .h5, .tdms, .npy, .npz).",
         ),
     ],
     motor: Annotated[
@@ -47,6 +59,12 @@ def diagnose(
             "--baseline. What they show standing is taken off.",
         ),
     ] = None,
+    column: TableColumn = None,
+    rate: TableRate = None,
+    current_scale: CurrentScale = None,
+    current_offset: CurrentOffset = None,
+    voltage_scale: VoltageScale = None,
+    voltage_offset: VoltageOffset = None,
     *,
     currents_only: Annotated[
         bool,
@@ -59,11 +77,18 @@ def diagnose(
         bool,
         typer.Option("--lenient", help="Mend what can be mended in a faulty file, and say what was."),
     ] = False,
+    report: Annotated[
+        int | None,
+        typer.Option(
+            "--report", metavar="N", min=1, help="Which event report of a capture with several (default: 1)."
+        ),
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """Tell from one recording whether a motor has shorted stator turns."""
     with collection_paused():
         from service.cli.recordings.diagnose import diagnose_recording
+        from service.cli.recordings.given_columns import GivenColumns
 
         diagnose_recording(
             record,
@@ -73,7 +98,11 @@ def diagnose(
             baseline=baseline or [],
             currents_only=currents_only,
             lenient=lenient,
+            report=report,
             as_json=as_json,
+            given=GivenColumns(
+                column or [], rate, current_scale, current_offset, voltage_scale, voltage_offset
+            ),
         )
 
 
@@ -83,7 +112,8 @@ def rotor(
         Path,
         typer.Argument(
             metavar="RECORD",
-            help="The current: columns of numbers (.csv, .tsv, .txt), COMTRADE, or an SEL event report.",
+            help="The current: a table of samples (.csv, .txt, .parquet, .mat, .h5, .tdms, .npy, .npz), "
+            "COMTRADE, or an SEL event report.",
         ),
     ],
     speed_rpm: Annotated[
@@ -132,6 +162,34 @@ def rotor(
 
 
 @commands.command()
+def speed(
+    records: Annotated[
+        list[Path],
+        typer.Argument(metavar="RECORD...", help="Recordings of one motor, in any order."),
+    ],
+    motor: Annotated[Path, typer.Option(metavar="MOTOR.toml", help="The motor.")],
+    lines: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="Where number of bars and lines are kept that the recordings teach: read first where it is "
+            "there, written at the end.",
+        ),
+    ] = None,
+    *,
+    lenient: Annotated[
+        bool, typer.Option("--lenient", help="Mend what can be mended in faulty files.")
+    ] = False,
+    as_json: Json = False,
+) -> None:
+    """See the speed of a motor in its line currents, by the lines of its rotor's slots."""
+    with collection_paused():
+        from service.cli.recordings.speed import tell_speeds
+
+        tell_speeds(records, motor, lines, lenient=lenient, as_json=as_json)
+
+
+@commands.command()
 def follow(
     records: Annotated[
         list[str],
@@ -165,6 +223,12 @@ def follow(
             metavar="DAYS", min=0, help="The condition is stale after so long without a valid record."
         ),
     ] = 7.0,
+    column: TableColumn = None,
+    rate: TableRate = None,
+    current_scale: CurrentScale = None,
+    current_offset: CurrentOffset = None,
+    voltage_scale: VoltageScale = None,
+    voltage_offset: VoltageOffset = None,
     *,
     lenient: Annotated[
         bool, typer.Option("--lenient", help="Mend what can be mended in faulty files.")
@@ -176,6 +240,7 @@ def follow(
         raise typer.BadParameter(f"--stale-after: expected a number of days, found {stale_after}")
     with collection_paused():
         from service.cli.conditions.follow import follow_records
+        from service.cli.recordings.given_columns import GivenColumns
 
     follow_records(
         records,
@@ -186,6 +251,7 @@ def follow(
         stale_after_days=stale_after,
         lenient=lenient,
         as_json=as_json,
+        given=GivenColumns(column or [], rate, current_scale, current_offset, voltage_scale, voltage_offset),
     )
 
 

@@ -16,7 +16,9 @@ Time = Annotated[
 NoteKind = Literal["note", "maintenance", "recorder-changed", "rewound", "reference-restarted"]
 """What a person may tell: all kinds of events but the one that only the motors file tells."""
 
-By = Annotated[str | None, typer.Option(metavar="NAME", help="Who says so (default: who is logged in).")]
+OnBehalfOf = Annotated[
+    str | None, typer.Option(metavar="NAME", help="Whom you do it for; shown beside your account.")
+]
 
 
 @commands.command()
@@ -101,14 +103,14 @@ def note(
         typer.Option(help="What it is: all but a note change what the condition follows from."),
     ] = "note",
     time: Time = None,
-    by: By = None,
+    on_behalf_of: OnBehalfOf = None,
     *,
     as_json: Json = False,
 ) -> None:
     """Tell what happened to a motor: maintenance, another winding, another relay, or just a note."""
     from service.cli.conditions.stored import add_note
 
-    add_note(url, motor, text, kind=kind, time=time, by=by, as_json=as_json)
+    add_note(url, motor, text, kind=kind, time=time, on_behalf_of=on_behalf_of, as_json=as_json)
 
 
 @commands.command()
@@ -125,14 +127,14 @@ def withdraw_note(
     note_id: Annotated[str, typer.Argument(metavar="ID", help="The note's id, as mcc notes shows it.")],
     reason: Annotated[str, typer.Option(metavar="TEXT", help="Why the note was wrong; it is kept.")],
     url: Url = DEFAULT_URL,
-    by: By = None,
+    on_behalf_of: OnBehalfOf = None,
     *,
     as_json: Json = False,
 ) -> None:
     """Let a note that was wrong count no more: the condition follows as if nobody had told it."""
     from service.cli.conditions.stored import withdraw_note
 
-    withdraw_note(url, motor, note_id, reason, by=by, as_json=as_json)
+    withdraw_note(url, motor, note_id, reason, on_behalf_of=on_behalf_of, as_json=as_json)
 
 
 @commands.command("restart-reference")
@@ -143,14 +145,14 @@ def restart_reference(
     ],
     url: Url = DEFAULT_URL,
     time: Time = None,
-    by: By = None,
+    on_behalf_of: OnBehalfOf = None,
     *,
     as_json: Json = False,
 ) -> None:
     """Take a motor for healthy as it is: what stands out of it from the first record on is learnt anew."""
     from service.cli.conditions.stored import restart_reference
 
-    restart_reference(url, motor, reason, time=time, by=by, as_json=as_json)
+    restart_reference(url, motor, reason, time=time, on_behalf_of=on_behalf_of, as_json=as_json)
 
 
 @commands.command()

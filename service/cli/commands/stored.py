@@ -29,7 +29,9 @@ RecordingIds = Annotated[
 ]
 Limit = Annotated[int, typer.Option("--limit", min=1, max=100_000, help="Show so many, the latest.")]
 Reason = Annotated[str | None, typer.Option(metavar="TEXT", help="Why; it is kept.")]
-By = Annotated[str | None, typer.Option(metavar="NAME", help="Who says so (default: who is logged in).")]
+OnBehalfOf = Annotated[
+    str | None, typer.Option(metavar="NAME", help="Whom you do it for; shown beside your account.")
+]
 Quantity = Literal[
     "mu_f", "theta_f", "load_level", "condition_level", "change",
     "rotor_severity_dB",
@@ -237,7 +239,7 @@ def rediagnose(
     scheduler: Annotated[
         str | None,
         typer.Option(
-            metavar="ADDRESS", help="With --batch: on the workers of this Dask scheduler, tcp://HOST:8786."
+            metavar="ADDRESS", help="With --batch: on the workers of this Dask scheduler, tls://HOST:8786."
         ),
     ] = None,
     config: Config = None,
@@ -308,14 +310,14 @@ def set_baseline(
     recordings: RecordingIds,
     url: Url = DEFAULT_URL,
     reason: Reason = None,
-    by: By = None,
+    on_behalf_of: OnBehalfOf = None,
     *,
     as_json: Json = False,
 ) -> None:
     """Choose at least three recordings known to be healthy; those in doubt need a reason."""
     from service.cli.recordings.baseline import set_baseline
 
-    set_baseline(url, motor, recordings, reason=reason, by=by, as_json=as_json)
+    set_baseline(url, motor, recordings, reason=reason, on_behalf_of=on_behalf_of, as_json=as_json)
 
 
 @baseline.command("drop")
@@ -323,11 +325,11 @@ def drop_baseline(
     motor: MotorName,
     url: Url = DEFAULT_URL,
     reason: Reason = None,
-    by: By = None,
+    on_behalf_of: OnBehalfOf = None,
     *,
     as_json: Json = False,
 ) -> None:
     """Have a motor compared with no baseline any more; its recordings stay."""
     from service.cli.recordings.baseline import drop_baseline
 
-    drop_baseline(url, motor, reason=reason, by=by, as_json=as_json)
+    drop_baseline(url, motor, reason=reason, on_behalf_of=on_behalf_of, as_json=as_json)

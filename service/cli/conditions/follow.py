@@ -10,11 +10,17 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
 from core.condition.errors import ObservationError
 from core.condition.following.follower import Follower
-from core.condition.verdict.condition import Condition, condition_of
+from core.condition.verdict.condition import Condition
+from core.condition.verdict.judging import condition_of
 from core.error_words import one_line
 from core.machines.motor_file.error import MotorFileError
 from core.machines.motor_file.reader import read_motor
 from core.machines.parameters import Motor
+from core.motor_condition.condition import MotorCondition, motor_condition
+from core.motor_condition.judging import rotor_part, supply_part, voltages_agree
+from core.motor_condition.supply import supply_condition
+from core.recordings.reading import SUFFIXES
+from core.rotor.trend import condition_of_findings
 from core.time_stamps import rfc3339
 from core.units import NANOSECONDS_PER_DAY
 from service.cli.conditions.followed_bus import Bus, Member, bus_of, read_neighbours
@@ -22,7 +28,8 @@ from service.cli.conditions.followed_records import Seen, find_records, observe_
 from service.cli.conditions.given_events import GivenEvent, given_events
 from service.cli.conditions.view import print_condition
 from service.cli.output import CommandError, failing_clearly, print_document, print_warning, progress
-from service.client.verdicts import to_the_second
+from service.cli.recordings.given_columns import NOTHING_GIVEN, GivenColumns, with_given_columns
+from service.client.verdicts import local_time
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +58,7 @@ class Step:
 class Followed:
     """All that came of the records: the condition at the end, the steps to it, and what was not used."""
 
-    condition: Condition
+    condition: MotorCondition
     steps: tuple[Step, ...]
     skipped: tuple[Seen, ...]
 
@@ -66,18 +73,20 @@ def follow_records(
     stale_after_days: float,
     lenient: bool,
     as_json: bool,
+    given: GivenColumns = NOTHING_GIVEN,
 ) -> None:
     """Read the records, fold them in the order of time, and print the motor's condition.
 
     A record that cannot be used is named with the reason; it only ages the condition.
 
+    given: what the command line says of a table's columns.
     neighbours: MOTOR.toml=RECORDS of other motors of the bus.
 
     Raises CommandError where the motor's file or an event cannot be used, or none of the records.
     """
     with failing_clearly(MotorFileError, OSError):
-        motor = read_motor(motor_file)
-        given = given_events(events, events_file)
+        motor = with_given_columns(read_motor(motor_file), given)
+        happened = given_events(events, events_file)
 
         def observe(paths: Sequence[Path], of: Motor) -> Sequence[Seen]:
             with _bar(of.name) as advance:
@@ -85,16 +94,16 @@ def follow_records(
 
         own = Member(motor, observe(find_records(records), motor))
         bus = bus_of(own, read_neighbours(neighbours, motor, observe))
-    followed = follow(own, bus, given, round(stale_after_days * NANOSECONDS_PER_DAY))
+    followed = follow(own, bus, happened, round(stale_after_days * NANOSECONDS_PER_DAY))
     if not followed.steps:
         raise _none_usable(records, followed.skipped)
-    if followed.condition.as_of_ns is None:
-        latest = to_the_second(_time(followed.steps[-1].seen))
+    if followed.condition.stator.as_of_ns is None:
+        latest = local_time(_time(followed.steps[-1].seen))
         print_warning(
             f"there is no record after the latest event, only until {latest}: the condition is unknown"
         )
     if as_json:
-        print_document(_document(motor_file, followed, given, bus))
+        print_document(_document(motor_file, followed, happened, bus))
     else:
         skipped = [(_name(one.path), one.refusal) for one in followed.skipped]
         history = [step.as_dict() for step in followed.steps]
@@ -134,7 +143,19 @@ def follow(own: Member, bus: Bus, events: Sequence[GivenEvent], stale_after_ns: 
         stale_after_ns,
         ended_by=follower.ended_by,
     )
-    return Followed(condition, tuple(steps), tuple(skipped))
+    return Followed(_whole(condition, own.motor, steps), tuple(steps), tuple(skipped))
+
+
+def _whole(stator: Condition, motor: Motor, steps: Sequence[Step]) -> MotorCondition:
+    """Return the condition of the motor: of its stator, of its rotor and of its supply."""
+    seen = [step.seen for step in steps]
+    rotors = [(one.time_ns or 0, one.rotor) for one in seen if one.rotor is not None]
+    supply = supply_condition(
+        [one.supply for one in seen if one.supply is not None],
+        motor.nameplate.rated_frequency_Hz,
+        voltages_agree=voltages_agree(stator),
+    )
+    return motor_condition(stator, (rotor_part(condition_of_findings(rotors)), supply_part(supply)))
 
 
 def _brief(follower: Follower, bus: Bus, now_ns: int) -> Condition:
@@ -177,7 +198,7 @@ def _skipped(records: Sequence[Seen]) -> list[dict[str, object]]:
 
 def _none_usable(given: Sequence[str], skipped: Sequence[Seen]) -> CommandError:
     if not skipped:
-        what = f"no recordings in {', '.join(given)}: expected .cfg, .cff or .cev files"
+        what = f"no recordings in {', '.join(given)}: expected {', '.join(SUFFIXES)} files"
     else:
         first = skipped[0]
         what = f"none of {len(skipped)} records can be used; the first, {_name(first.path)}: {first.refusal}"

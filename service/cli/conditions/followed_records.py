@@ -8,17 +8,26 @@ from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
-from core.condition.measuring.observing import observation_of
+from core.condition.copies import SAME_TIME_NS, is_copy
+from core.condition.measuring.beside_stator import supply_of
+from core.condition.measuring.observing import examine, observation_of
 from core.condition.observation import Observation
 from core.diagnosis.acceptance import accept
 from core.machines.parameters import Motor
+from core.machines.table_layout import layout_of
 from core.operation import Operation
 from core.recordings import RecordingError, read
 from core.recordings.errors import RecordingTooLongError, UnknownTimeError
-from core.recordings.reading import READERS, mended_by
+from core.recordings.fidelity import Fidelity, fidelity_of
+from core.recordings.reading import SUFFIXES, is_recording_name, mended_by
+from core.rotor.finding import RotorFinding
+from core.supply.figures import SupplyFigures
 
 MOST_VALUES = 8_000_000
 """A longer recording is refused, as the service refuses it."""
+
+LEAST_OF_ROTOR_S = 1.0
+"""A shorter record tells nothing of a rotor at any usual slip, and is not diagnosed for it."""
 
 FEW = 12
 """So many records are read sooner than a second process has started."""
@@ -35,6 +44,8 @@ class Seen:
 
     path: as it was found. time_ns: of its trigger, UTC; None where it cannot be read. observation: None where
     the record was refused. refusal: why. operation: what the motor does in it, where that can be told.
+    fidelity: how finely it has its values. rotor: of a record that is long enough; None of others. supply:
+    None where it shows nothing of it.
     """
 
     path: Path
@@ -42,6 +53,9 @@ class Seen:
     observation: Observation | None
     refusal: str = ""
     operation: Operation | None = None
+    fidelity: Fidelity = Fidelity.TEXT
+    rotor: RotorFinding | None = None
+    supply: SupplyFigures | None = None
 
     def refused(self, reason: str) -> "Seen":
         """Return the record as one that is not used, with the reason."""
@@ -77,9 +91,8 @@ def _meant(name: str) -> Iterator[Path]:
 
 def _inside(folder: Path) -> Iterator[Path]:
     """Yield the recordings of a folder, each event once: a relay may keep it as COMTRADE and as CEV."""
-    order = list(READERS)
-    known = [path for path in folder.rglob("*") if path.suffix.casefold() in READERS and path.is_file()]
-    known.sort(key=lambda path: (str(path.with_suffix("")), order.index(path.suffix.casefold())))
+    known = [path for path in folder.rglob("*") if is_recording_name(path.name) and path.is_file()]
+    known.sort(key=lambda path: (str(path.with_suffix("")), SUFFIXES.index(path.suffix.casefold())))
     before = None
     for path in known:
         event = path.with_suffix("")
@@ -93,7 +106,7 @@ def observe_all(
 ) -> list[Seen]:
     """Read and observe the records, and return them in the order of time; those without a time come last.
 
-    Of copies of one record the first is used. advance: is told how many of all are done.
+    Of copies of one record the finest is used, else the first. advance: is told how many of all are done.
     """
     look = partial(observe_record, motor=motor, lenient=lenient)
     seen: list[Seen] = []
@@ -126,7 +139,7 @@ def observe_record(path: Path, motor: Motor, *, lenient: bool) -> Seen:
         is_pattern = GLOB_CHARACTERS.intersection(str(path))
         return Seen(path, None, None, "no file matches" if is_pattern else "there is no such file or folder")
     try:
-        recording = read(path, lenient=lenient, most_values=MOST_VALUES)
+        recording = read(path, lenient=lenient, most_values=MOST_VALUES, layout=layout_of(motor))
     except RecordingTooLongError as error:
         return Seen(path, None, None, str(error))
     except RecordingError as error:
@@ -151,14 +164,43 @@ def observe_record(path: Path, motor: Motor, *, lenient: bool) -> Seen:
     observation = observation_of(recording, acceptance.accepted)
     if observation is None:
         return unused.refused("it gives no finite negative-sequence voltage and current")
-    return Seen(path, time_ns, observation)
+    seen = Seen(path, time_ns, observation, fidelity=fidelity_of(path))
+    if recording.duration_s >= LEAST_OF_ROTOR_S:
+        examined = examine(recording, motor)  # the rotor takes the running point of a diagnosis
+        return replace(seen, rotor=examined.rotor, supply=examined.supply)
+    return replace(seen, supply=supply_of(recording, motor, acceptance)[0])
 
 
 def _without_copies(seen: Sequence[Seen]) -> Iterator[Seen]:
-    first: dict[Observation, Path] = {}
+    """Yield the records, the coarser copies of an event as refused. seen: in the order of time."""
+    kept: list[Seen] = []
+    copies: dict[Path, Path] = {}
     for one in seen:
         if one.observation is None:
-            yield one
             continue
-        kept = first.setdefault(one.observation, one.path)
-        yield one if kept == one.path else one.refused(f"a copy of {kept}")
+        same = next((place for place in _near(kept, one) if _is_copy(one, kept[place])), None)
+        if same is None:
+            kept.append(one)
+            continue
+        best, worse = sorted((kept[same], one), key=lambda each: each.fidelity)
+        kept[same] = best
+        copies[worse.path] = best.path
+    for one in seen:
+        copied = copies.get(one.path)
+        while copied in copies:
+            copied = copies[copied]
+        yield one if copied is None else one.refused(f"a copy of {copied}: the same event")
+
+
+def _near(kept: Sequence[Seen], one: Seen) -> Iterator[int]:
+    """Yield the places of records that may be of the same time; they are in the order of time."""
+    for place in reversed(range(len(kept))):
+        if (one.time_ns or 0) - (kept[place].time_ns or 0) > SAME_TIME_NS:
+            return
+        yield place
+
+
+def _is_copy(one: Seen, other: Seen) -> bool:
+    if one.observation is None or other.observation is None:
+        return False
+    return is_copy(one.observation, other.observation)

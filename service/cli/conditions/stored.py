@@ -1,6 +1,5 @@
 """`mcc condition`, `note`, `notes`, `withdraw-note`, `restart-reference`: a motor over time and its notes."""
 
-import getpass
 from collections.abc import Sequence
 from itertools import islice
 from typing import TYPE_CHECKING, cast
@@ -11,6 +10,7 @@ from rich.text import Text
 from core.condition.events import ENDING
 from core.error_words import one_line
 from core.time_stamps import nanoseconds
+from service.audit.acting import who_of
 from service.cli.output import (
     READABLE_WIDTH,
     CommandError,
@@ -23,10 +23,10 @@ from service.cli.output import (
 from service.client.conditions import condition_lines, state_text
 from service.client.rest_client import Document, ServiceClient, ServiceError
 from service.client.tables import FittedTable
-from service.client.verdicts import level, to_the_second
+from service.client.verdicts import level, local_time
 
 if TYPE_CHECKING:
-    from statorwatch_client.models import NoteRequest, RestartRequest
+    from statorwatch_client.models import NoteRequest, RestartRequest, Withdrawal
 
 MOST_CHANGES = 1000
 """So many changes are shown, the latest first."""
@@ -48,11 +48,12 @@ def show_condition(url: str, motor: str, *, history: bool, as_json: bool) -> Non
 
 
 def add_note(
-    url: str, motor: str, text: str, *, kind: str, time: str | None, by: str | None, as_json: bool
+    url: str, motor: str, text: str, *, kind: str, time: str | None, on_behalf_of: str | None, as_json: bool
 ) -> None:
     """Tell something of a motor. Raises CommandError."""
     _require_words(text, "TEXT")
-    note = {"kind": kind, "text": text, "by": by or _login()} | ({} if time is None else {"time": time})
+    said = {"kind": kind, "text": text, "on_behalf_of": on_behalf_of, "time": time}
+    note = {name: value for name, value in said.items() if value is not None}
     with failing_clearly(ServiceError), ServiceClient(url) as service:
         kept = service.add_note(motor, cast("NoteRequest", note))
         waits = _waits_for_a_record(service, kept)
@@ -67,6 +68,7 @@ def list_notes(url: str, motor: str, *, as_json: bool) -> None:
         print_document({"notes": notes})
         return
     table = FittedTable(box=SIMPLE_HEAD, collapse_padding=True)
+    table.kept = ("id",)
     for heading in ("time", "kind", "by"):
         table.add_column(heading)
     table.add_column("text", max_width=READABLE_WIDTH)
@@ -74,11 +76,12 @@ def list_notes(url: str, motor: str, *, as_json: bool) -> None:
     for note in notes:
         text = one_line(str(note["text"]))
         if note["withdrawn_time"] is not None:
-            text = one_line(f"{text} (withdrawn by {note['withdrawn_by']}: {note['withdrawn_reason']})")
+            who = who_of(note, "withdrawn_")
+            text = one_line(f"{text} (withdrawn by {who}: {note['withdrawn_reason']})")
         table.add_row(
-            to_the_second(note["time"]),
+            local_time(note["time"]),
             Text(str(note["kind"])),
-            Text(one_line(str(note["by"]))),
+            Text(one_line(who_of(note))),
             Text(text),
             str(note["id"]),
         )
@@ -86,11 +89,13 @@ def list_notes(url: str, motor: str, *, as_json: bool) -> None:
 
 
 def restart_reference(
-    url: str, motor: str, reason: str, *, time: str | None, by: str | None, as_json: bool
+    url: str, motor: str, reason: str, *, time: str | None, on_behalf_of: str | None, as_json: bool
 ) -> None:
     """Have a motor's reference learnt anew. Raises CommandError."""
     _require_words(reason, "--reason")
-    restart: RestartRequest = {"reason": reason, "by": by or _login()}
+    restart: RestartRequest = {"reason": reason}
+    if on_behalf_of is not None:
+        restart["on_behalf_of"] = on_behalf_of
     if time is not None:
         restart["time"] = time
     with failing_clearly(ServiceError), ServiceClient(url) as service:
@@ -99,15 +104,20 @@ def restart_reference(
     _print_kept(kept, waits=waits, as_json=as_json)
 
 
-def withdraw_note(url: str, motor: str, note_id: str, reason: str, *, by: str | None, as_json: bool) -> None:
+def withdraw_note(
+    url: str, motor: str, note_id: str, reason: str, *, on_behalf_of: str | None, as_json: bool
+) -> None:
     """Let a note that was wrong count no more. Raises CommandError."""
     _require_words(reason, "--reason")
+    withdrawal: Withdrawal = {"reason": reason}
+    if on_behalf_of is not None:
+        withdrawal["on_behalf_of"] = on_behalf_of
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        note = service.withdraw_note(motor, note_id, {"reason": reason, "by": by or _login()})
+        note = service.withdraw_note(motor, note_id, withdrawal)
     if as_json:
         print_document(note)
         return
-    words = f"{note['motor']}: {note['kind']} of {to_the_second(note['time'])} is withdrawn"
+    words = f"{note['motor']}: {note['kind']} of {local_time(note['time'])} is withdrawn"
     results().print(Text(one_line(words)), soft_wrap=True)
 
 
@@ -118,17 +128,17 @@ def _notes(service: ServiceClient, motor: str) -> "islice[Document]":
 def _history_table(changes: Sequence[Document], notes: dict[object, Document]) -> FittedTable:
     table = FittedTable(box=SIMPLE_HEAD, collapse_padding=True)
     table.add_column("time", no_wrap=True)
-    table.add_column("condition")
+    table.add_column("condition of the stator")
     table.add_column("level", no_wrap=True)
     table.add_column("because of", max_width=READABLE_WIDTH)
     for change in changes:
         note = notes.get(change["note_id"])
         if note is not None:
-            because = f"{note['kind']}: {one_line(str(note['text']))} ({one_line(str(note['by']))})"
+            because = f"{note['kind']}: {one_line(str(note['text']))} ({one_line(who_of(note))})"
         else:
             because = "a recording" if change["note_id"] is None else "a note"
         table.add_row(
-            to_the_second(change["time"]),
+            local_time(change["time"]),
             state_text(change),
             level(change["mu_f"], change["mu_f_ci95"]),
             Text(because),
@@ -148,7 +158,7 @@ def _print_kept(note: Document, *, waits: bool, as_json: bool) -> None:
     if as_json:
         print_document(note)
     else:
-        words = f"{note['motor']}: {note['kind']} of {to_the_second(note['time'])} is noted"
+        words = f"{note['motor']}: {note['kind']} of {local_time(note['time'])} is noted"
         results().print(Text(one_line(words)), soft_wrap=True)
     if waits:
         print_warning(
@@ -159,11 +169,3 @@ def _print_kept(note: Document, *, waits: bool, as_json: bool) -> None:
 def _require_words(text: str, what: str) -> None:
     if not text.strip():
         raise CommandError(f"{what}: expected a few words, found none")
-
-
-def _login() -> str:
-    """Return the name under which the caller is logged in. Raises CommandError."""
-    try:
-        return getpass.getuser()
-    except (OSError, KeyError) as error:
-        raise CommandError("--by: expected a name; who is logged in is not known") from error

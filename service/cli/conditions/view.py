@@ -11,7 +11,7 @@ from core.error_words import one_line
 from service.cli.output import facts_table, results
 from service.client.conditions import cause, condition_lines, state_text
 from service.client.tables import FittedTable
-from service.client.verdicts import percent, to_the_second
+from service.client.verdicts import local_time, percent
 
 Document = Mapping[str, object]
 
@@ -64,7 +64,7 @@ def _print_course(console: Console, history: Sequence[Document]) -> None:
     for turn in turns[-MOST_TURNS:]:
         latest = turn[-1]
         table.add_row(
-            to_the_second(turn[0]["time"]),
+            local_time(turn[0]["time"]),
             str(len(turn)),
             state_text(latest),
             f"{percent(latest['mu_f'])} %",

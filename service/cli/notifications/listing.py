@@ -6,11 +6,10 @@ from typing import Any
 
 from rich.text import Text
 
-from core.error_words import one_line
 from service.cli.output import WRONG_USE, CommandError, failing_clearly, print_document, results
 from service.cli.rows import Column, print_rows
 from service.client.rest_client import Document, ServiceClient, ServiceError
-from service.client.verdicts import to_the_second
+from service.client.verdicts import local_time, local_times
 
 STATE_COLOURS = {"sent": "green", "dead": "red", "queued": "yellow", "sending": "yellow"}
 
@@ -27,7 +26,7 @@ def list_notifications(
         print_document({"notifications": found})
         return
     columns: Mapping[str, Column] = {
-        "time": lambda row: to_the_second(row["created_time"])[:16],
+        "time": lambda row: local_time(row["created_time"], seconds=False),
         "state": _state,
         "about": _about,
         "to": _receiver,
@@ -37,7 +36,7 @@ def list_notifications(
     for row in found:
         if row["error"]:
             words = f"{str(row['id'])[:8]}: {row['attempts']} attempts: {row['error']}"
-            results().print(Text(one_line(words)), soft_wrap=True)
+            results().print(Text(local_times(words)), soft_wrap=True)
 
 
 def list_channels(url: str, *, as_json: bool) -> None:

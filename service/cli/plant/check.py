@@ -8,7 +8,9 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 from rich.text import Text
 
 from core.error_words import one_line
+from mms import mbed_tls_version
 from service.cli.output import DONE, FAILED, print_document, progress, results
+from service.cli.plant.windings import proposals, winding_document
 from service.setup.check import CheckedPlant, check
 from service.setup.relay_survey import RelaySurvey, survey
 
@@ -57,6 +59,9 @@ def _print(checked: CheckedPlant, answers: tuple[RelaySurvey, ...]) -> None:
         console.print(Text(f"warning: {one_line(warning)}", style="yellow"), soft_wrap=True)
     for answer in answers:
         console.print(Text(line_of(answer)), soft_wrap=True)
+    if checked.plant is not None and not checked.problems:
+        for proposal in proposals(checked.plant.motors):
+            console.print(Text(f"note: {one_line(proposal)}"), soft_wrap=True)
     silent = sum(answer.unreachable is not None for answer in answers)
     if silent:
         console.print(Text(f"{silent} of {_number(len(answers), 'relay')} did not answer"))
@@ -71,6 +76,7 @@ def _print(checked: CheckedPlant, answers: tuple[RelaySurvey, ...]) -> None:
         )
         numbers = ((plant.motors, "motor"), (plant.relays, "relay"), (plant.sites, "site"))
         words = ", ".join(_number(len(found), what) for found, what in numbers)
+        console.print(Text(f"TLS to relays: Mbed TLS {mbed_tls_version() or 'of unknown version'}"))
         console.print(Text(f"{said}: {words}"))
 
 
@@ -134,7 +140,9 @@ def _document(checked: CheckedPlant, answers: tuple[RelaySurvey, ...]) -> dict[s
         "problems": [{**problem.document(), "message": str(problem)} for problem in checked.problems],
         "warnings": list(checked.warnings),
         "motors": [] if plant is None else [motor.name for motor in plant.motors],
+        "windings": [] if plant is None else [winding_document(motor) for motor in plant.motors],
         "relays": [] if plant is None else [relay.name for relay in plant.relays],
+        "mbed_tls": mbed_tls_version(),
         "asked": [_answer_document(answer) for answer in answers],
     }
 

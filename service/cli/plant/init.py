@@ -1,4 +1,4 @@
-"""`mcc init`: the files of a new plant, from its SCL files or from what its relays answer."""
+"""`mcc init`: the files of a new plant, from its list of motors, its SCL files or what its relays answer."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -11,7 +11,7 @@ from core.error_words import one_line
 from service.cli.output import WRONG_USE, CommandError, failing_clearly, print_document, progress, results
 from service.configuration.settings import Settings
 from service.plant import PlantError
-from service.plant.relay_entry import is_host
+from service.setup.addresses import host_and_port, is_address
 from service.setup.check import check
 from service.setup.draft import (
     MOST_RELAYS,
@@ -21,6 +21,8 @@ from service.setup.draft import (
     draft_of_scd,
     relays_to_ask,
 )
+from service.setup.motor_list import draft_of_list, write_list_template
+from service.setup.motor_list_file import is_motor_list
 from service.setup.new_plant import SETTINGS, write_plant
 from service.setup.relay_survey import RelaySurvey, survey
 
@@ -57,6 +59,17 @@ def init_plant(directory: Path, sources: Sequence[str], *, as_json: bool) -> Non
     )
 
 
+def write_template(path: Path, *, as_json: bool) -> None:
+    """Write an empty list of motors. Raises CommandError where it cannot be written."""
+    with failing_clearly(PlantError, OSError):
+        write_list_template(path)
+    if as_json:
+        print_document({"written": [str(path)]})
+        return
+    words = f"wrote {path}: fill in a row for each motor, then: mcc init DIR {path}"
+    results().print(Text(words), soft_wrap=True)
+
+
 def _counted(draft: Draft) -> str:
     number = len(draft.relays)
     return f"{number} relays" if number > 1 else f"{number or 'example'} relay"
@@ -68,10 +81,12 @@ def _draft(sources: Sequence[str]) -> Draft:
         return _asked(sources)
     if len(files) < len(sources):
         raise CommandError(
-            "expected SCL files, or addresses of relays, found both",
+            "expected a list of motors, SCL files, or addresses of relays, found several kinds",
             details={"type": "WrongUse"},
             exit_code=WRONG_USE,
         )
+    if len(files) == 1 and is_motor_list(Path(files[0])):
+        return draft_of_list(Path(files[0]))
     if len(files) == 1 and not _is_scl(Path(files[0])):
         return _asked(_listed(Path(files[0])))
     read, unreadable = _read(files)
@@ -117,7 +132,7 @@ def _listed(path: Path) -> list[str]:
     lines = [line.partition("#")[0].strip() for line in text.splitlines()]
     addresses = [line for line in lines if line]
     for line in addresses:
-        if not _is_address(line):
+        if not is_address(line):
             raise _no_source(path, repr(line[:60]))
     return addresses
 
@@ -146,26 +161,13 @@ def _tell(answer: RelaySurvey) -> None:
     progress().print(Text(one_line(f"{answer.relay.host}:{answer.relay.port}: {words}")), soft_wrap=True)
 
 
-def _is_address(text: str) -> bool:
-    host, port = _parts(text)
-    return is_host(host) and (not port or (port.isdecimal() and 0 < int(port[:6]) < 65536))
-
-
-def _parts(text: str) -> tuple[str, str]:
-    """Return host and port of HOST, HOST:PORT or [IPv6]:PORT."""
-    host, colon, port = text.rpartition(":")
-    if not colon or ("]" not in host and ":" in host):
-        host, port = text, ""
-    return host.removeprefix("[").removesuffix("]"), port
-
-
 def _address(text: str) -> scl.Address:
     """Read an address. Raises CommandError."""
-    if not _is_address(text):
+    if not is_address(text):
         raise CommandError(
             f"expected a file, or an address such as 10.20.1.11 or 10.20.1.11:102, found {text[:60]!r}",
             details={"type": "WrongUse"},
             exit_code=WRONG_USE,
         )
-    host, port = _parts(text)
-    return scl.Address(host, int(port)) if port else scl.Address(host)
+    host, port = host_and_port(text)
+    return scl.Address(host) if port is None else scl.Address(host, port)

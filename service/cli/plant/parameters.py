@@ -3,7 +3,7 @@
 import sys
 import tomllib
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, fields, replace
 from math import sqrt
 from pathlib import Path
 from shutil import copy2
@@ -34,6 +34,7 @@ from core.machines.motor_file.writer import motor_text, write_motor
 from core.machines.parameters import MachineParameters, Motor, Nameplate, ParametersSource, WoundRotor
 from core.quantity_text import plain
 from service.cli.output import WRONG_USE, failing_clearly, print_document, print_warning, results
+from service.cli.plant.windings import WinderSheet, winding_lines, winding_of_sheet
 from service.cli.recordings.commission import check_output
 from service.client.tables import FittedTable
 
@@ -50,6 +51,8 @@ UNITS: Mapping[str, tuple[float, str]] = {
     "stator_resistance_ohm": (1.0, "ohm"),
 }
 """Unit in which a figure of a catalogue is shown, with the factor to it."""
+
+NOTHING_COMPARED: tuple[Compared, ...] = ()
 
 FAR = 2.5
 FAR_OF_IMPEDANCES = 4.0
@@ -78,6 +81,15 @@ class DataSheet:
     locked_rotor_torque: float | None
     breakdown_torque: float | None
     inertia_kgm2: float | None
+    winding: WinderSheet
+
+    @property
+    def tells_winding_alone(self) -> bool:
+        """Whether it says how the stator is wound, and has no figure from which parameters follow."""
+        settings = ("unit", "values", "winding")
+        return not self.winding.is_empty and all(
+            getattr(self, one.name) is None for one in fields(self) if one.name not in settings
+        )
 
     @property
     def has_impedances(self) -> bool:
@@ -104,6 +116,8 @@ def parameters_of_data_sheet(
 ) -> None:
     """Turn a data sheet into parameters; write the motor's file or print it, and print what was found.
 
+    A sheet that tells the winding alone leaves the parameters as they are.
+
     Raises CommandError, and writes nothing, where something is missing or impossible, or a file cannot be
     used or written.
     """
@@ -111,12 +125,17 @@ def parameters_of_data_sheet(
         check_output(output, nameplate, ())
     with failing_clearly(CommissioningError, exit_code=WRONG_USE), failing_clearly(MotorFileError, OSError):
         plate = read_plate(nameplate)
-        parameters, intervals, compared = _found(sheet, plate.nameplate, plate.wound_rotor)
-        motor = replace(plate.motor, parameters=parameters, parameters_source=ParametersSource.DATA_SHEET)
-        warnings = _warnings(compared, from_impedances=sheet.has_impedances)
-        if not sheet.has_impedances:
-            warnings += circuit_doubts(parameters, compared, plate.nameplate)
-        heading = _heading(compared, warnings, from_impedances=sheet.has_impedances)
+        motor = replace(plate.motor, winding=winding_of_sheet(sheet.winding, plate))
+        intervals, compared, warnings = plate.intervals, NOTHING_COMPARED, []
+        if sheet.tells_winding_alone:
+            heading = "Stator winding by `mcc parameters`; the parameters are as they were"
+        else:
+            parameters, intervals, compared = _found(sheet, plate.nameplate, plate.wound_rotor)
+            motor = replace(motor, parameters=parameters, parameters_source=ParametersSource.DATA_SHEET)
+            warnings = _warnings(compared, from_impedances=sheet.has_impedances)
+            if not sheet.has_impedances:
+                warnings += circuit_doubts(parameters, compared, plate.nameplate)
+            heading = _heading(compared, warnings, from_impedances=sheet.has_impedances)
         text = motor_text(motor, intervals=intervals, remarks={}, heading=heading)
         motor_from_table(tomllib.loads(text), name=motor.name, source=output or nameplate)
         backup = None if output is None else _kept(output, nameplate)
@@ -129,7 +148,8 @@ def parameters_of_data_sheet(
         for warning in warnings:
             print_warning(warning)
     else:
-        results().print(_table(output, parameters, intervals, compared))
+        results().print(_table(output, motor.parameters, intervals, compared))
+        results().print(Text(winding_lines(motor)))
         for warning in warnings:
             results().print(Text(f"WARNING: {warning}"))
         if backup is not None:
@@ -264,9 +284,10 @@ def _document(
 ) -> dict[str, object]:
     return {
         "parameters": {
-            name: {"value": value, "ci95": list(intervals[name])}
+            name: {"value": value, "ci95": list(intervals[name]) if name in intervals else None}
             for name, value in asdict(motor.parameters).items()
         },
+        "winding": None if motor.winding is None else asdict(motor.winding),
         "magnetising_inductance_H": motor.parameters.magnetising_inductance_H,
         "parameters_source": str(motor.parameters_source),
         "figures": [asdict(one) for one in compared],
@@ -286,8 +307,8 @@ def _table(
     for heading in ("quantity", "value", "interval, or given", "off by"):
         table.add_column(heading)
     for name, value in asdict(parameters).items():
-        low, high = intervals[name]
-        table.add_row(name, plain(value, 5), f"{plain(low, 4)} .. {plain(high, 4)}", "")
+        ends = " .. ".join(plain(end, 4) for end in intervals.get(name, ()))
+        table.add_row(name, plain(value, 5), ends, "")
     table.add_section()
     for one in compared:
         off = "" if one.deviations is None else f"{one.deviations:+.1f} sd"

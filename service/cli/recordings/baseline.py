@@ -1,16 +1,16 @@
 """`mcc baseline`: the healthy recordings that a motor is compared with."""
 
-import getpass
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from rich.text import Text
 
 from core.error_words import one_line
+from service.audit.acting import who_of
 from service.cli.output import failing_clearly, print_document, results
 from service.cli.rows import print_rows, require_one_format
 from service.client.rest_client import Document, ServiceClient, ServiceError
-from service.client.verdicts import to_the_second
+from service.client.verdicts import local_time
 
 if TYPE_CHECKING:
     from statorwatch_client.models import BaselineRequest
@@ -29,25 +29,33 @@ def show_baseline(url: str, motor: str, *, as_csv: bool, as_json: bool) -> None:
     doubts = {doubt["recording_id"]: doubt["doubt"] for doubt in _items(baseline, "doubts")}
     rows = [{**one, "doubt": doubts.get(one["id"])} for one in _items(baseline, "recordings")]
     columns = {
-        "recorded": lambda one: to_the_second(one["recorded_time"]),
+        "recorded": lambda one: local_time(one["recorded_time"]),
         "name": lambda one: str(one["name"]),
         "in doubt for": lambda one: str(one["doubt"] or "-"),
         "id": lambda one: str(one["id"]),
     }
     print_rows("baseline", rows, FIELDS, columns, as_csv=as_csv, as_json=False, whole=("id",))
     if not as_csv and rows:
-        why = f": {baseline['reason']} ({baseline['by']})" if baseline["reason"] else ""
-        chosen = one_line(f"chosen {to_the_second(baseline['chosen_time'])}{why}")
+        why = f": {baseline['reason']} ({who_of(baseline)})" if baseline["reason"] else ""
+        chosen = one_line(f"chosen {local_time(baseline['chosen_time'])}{why}")
         results().print(Text(chosen), soft_wrap=True)
 
 
 def set_baseline(
-    url: str, motor: str, recordings: Sequence[str], *, reason: str | None, by: str | None, as_json: bool
+    url: str,
+    motor: str,
+    recordings: Sequence[str],
+    *,
+    reason: str | None,
+    on_behalf_of: str | None,
+    as_json: bool,
 ) -> None:
     """Replace a motor's baseline. Raises CommandError."""
     wanted: BaselineRequest = {"recording_ids": list(recordings)}
     if reason is not None:
-        wanted["reason"], wanted["by"] = reason, by or getpass.getuser()
+        wanted["reason"] = reason
+    if on_behalf_of is not None:
+        wanted["on_behalf_of"] = on_behalf_of
     with failing_clearly(ServiceError), ServiceClient(url) as service:
         baseline = service.set_baseline(motor, wanted)
     if as_json:
@@ -58,11 +66,12 @@ def set_baseline(
     results().print(Text(one_line(words)), soft_wrap=True)
 
 
-def drop_baseline(url: str, motor: str, *, reason: str | None, by: str | None, as_json: bool) -> None:
+def drop_baseline(
+    url: str, motor: str, *, reason: str | None, on_behalf_of: str | None, as_json: bool
+) -> None:
     """Forget a motor's baseline. Raises CommandError."""
-    said = {} if reason is None else {"reason": reason, "by": by or getpass.getuser()}
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        service.drop_baseline(motor, **said)
+        service.drop_baseline(motor, reason=reason, on_behalf_of=on_behalf_of)
     if as_json:
         print_document({"motor": motor, "recordings": []})
         return

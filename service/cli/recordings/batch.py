@@ -76,7 +76,7 @@ def _workers(settings: Settings, scheduler: str | None, processes: int | None) -
 
     if scheduler is None:
         return DaskWorkers.of_this_machine(processes or settings.workers)
-    return DaskWorkers.of_scheduler(scheduler, open_store_anywhere(settings))
+    return DaskWorkers.of_scheduler(scheduler, open_store_anywhere(settings), settings.dask)
 
 
 def _time(text: str) -> int:

@@ -3,6 +3,7 @@
 import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import asdict
 from pathlib import Path
 
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
@@ -15,6 +16,7 @@ from core.machines.candidates import LoadLaw
 from core.machines.motor_file.error import MotorFileError
 from core.machines.motor_file.reader import read_plate
 from core.machines.motor_file.writer import write_motor
+from core.machines.table_layout import layout_of
 from core.quantity_text import plain, with_unit
 from core.recordings import RecordingError
 from service.cli.output import (
@@ -26,6 +28,7 @@ from service.cli.output import (
     progress,
     results,
 )
+from service.cli.plant.windings import winding_row
 from service.cli.recordings.files import read_recording
 from service.client.tables import FittedTable
 
@@ -45,7 +48,7 @@ def commission_motor(
     check_output(output, nameplate, records)
     with failing_clearly(RecordingError, MotorFileError, CommissioningError, OSError):
         plate = read_plate(nameplate)
-        recordings = [read_recording(record, lenient=lenient) for record in records]
+        recordings = [read_recording(record, lenient=lenient, layout=layout_of(plate)) for record in records]
         for note in (note for one in recordings for note in (*one.warnings, *one.repairs)):
             print_warning(note)
         with progress_bar() as advance:
@@ -62,7 +65,14 @@ def commission_motor(
             heading=_heading(records, found),
         )
     if as_json:
-        print_document({**found.as_dict(), "output": str(output)})
+        winding = found.motor.winding
+        print_document(
+            {
+                **found.as_dict(),
+                "winding": None if winding is None else asdict(winding),
+                "output": str(output),
+            }
+        )
     else:
         results().print(commissioning_table(output, found))
         results().print(Text(f"{output} is written"), soft_wrap=True)
@@ -122,6 +132,15 @@ def commissioning_table(output: Path, found: Commissioning) -> FittedTable:
         table.add_row(
             name, plain(one.value, 5), _interval(one), Text(f"fixed: {one.fixed}" if one.fixed else "")
         )
+    if found.change:
+        table.add_section()
+        table.add_row("from a start to running", "", "", "deep bars, leakage that saturates")
+    for name, one in found.change.items():
+        table.add_row(
+            name, plain(one.value, 4), _interval(one), Text(f"fixed: {one.fixed}" if one.fixed else "")
+        )
+    winding, remark = winding_row(found.motor)
+    table.add_row("stator winding", Text(winding), "", Text(remark))
     for start in found.starts:
         table.add_section()
         table.add_row("record", Text(Path(start.record).name), "", f"switched on at {start.onset_s:.4f} s")

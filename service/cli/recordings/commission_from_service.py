@@ -122,6 +122,14 @@ def _estimated(found: Commissioning, starts: FetchedStarts) -> EstimatedParamete
         intervals={name: one.ci95 for name, one in found.parameters.items() if one.ci95},
         remarks={name: f"fixed: {one.fixed}" for name, one in found.parameters.items() if one.fixed},
         origin=f"by mcc commission, from the start{'s' if len(starts.used) > 1 else ''} of {used}",
+        change={
+            table: asdict(what)
+            for table, what in (
+                ("deep_bars", found.motor.deep_bars),
+                ("leakage_saturation", found.motor.leakage_saturation),
+            )
+            if what is not None
+        },
     )
 
 

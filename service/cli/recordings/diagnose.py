@@ -11,16 +11,20 @@ from core.classification.classification import Classification
 from core.classification.record import classify_record
 from core.condition.measuring.observing import Examined, examine
 from core.diagnosis.errors import DiagnosisError
+from core.diagnosis.phase_words import turns_phase_in_words
 from core.diagnosis.stator import learn_baseline
 from core.diagnosis.verdict import Diagnosis
 from core.machines.motor_file.error import MotorFileError
 from core.machines.motor_file.reader import read_motor
 from core.machines.parameters import ParametersSource
+from core.machines.table_layout import layout_of
 from core.machines.typical import COMMISSION
 from core.quantity_text import with_unit
 from core.recordings import RecordingError
+from core.speed.memory import LineMemory
 from service.cli.output import WRONG_USE, CommandError, failing_clearly, print_document, results
 from service.cli.recordings.files import read_recording, with_advice
+from service.cli.recordings.given_columns import NOTHING_GIVEN, GivenColumns, with_given_columns
 from service.client.classification import answer_rows
 from service.client.rotor_and_supply import (
     gap_words,
@@ -29,6 +33,7 @@ from service.client.rotor_and_supply import (
     supply_words,
     swing_words,
 )
+from service.client.speed import speed_words
 from service.client.tables import FittedTable
 from service.client.verdicts import OPERATIONS, detection, interval, level, load, verdict_text
 
@@ -42,12 +47,15 @@ def diagnose_recording(
     baseline: Sequence[Path],
     currents_only: bool,
     lenient: bool,
+    report: int | None,
     as_json: bool,
+    given: GivenColumns = NOTHING_GIVEN,
 ) -> None:
     """Read a recording, diagnose it and print the result, with what a lenient reader repaired as reasons.
 
     The result names the motor's file, which may be one found beside the recording.
 
+    given: what the command line says of a table's columns.
     baseline: healthy recordings of the same motor, whose standing asymmetry is subtracted.
 
     Raises CommandError where the recording or the motor file cannot be used, or the method is not known.
@@ -56,10 +64,13 @@ def diagnose_recording(
         failing_clearly(RecordingError, MotorFileError, OSError),
         failing_clearly(DiagnosisError, exit_code=WRONG_USE),
     ):
-        recording = read_recording(record, lenient=lenient)
+        if not record.is_file():
+            read_recording(record, lenient=lenient)  # which says so, before a motor file that is not there
         motor_file = motor or _motor_file_beside(record)
-        found = read_motor(motor_file)
-        healthy = [read_recording(one, lenient=lenient) for one in baseline]
+        found = with_given_columns(read_motor(motor_file), given)
+        layout = layout_of(found)
+        recording = read_recording(record, lenient=lenient, layout=layout, report=report)
+        healthy = [read_recording(one, lenient=lenient, layout=layout) for one in baseline]
         with _naming_currents_only():
             examined = examine(
                 recording,
@@ -68,12 +79,13 @@ def diagnose_recording(
                 model=model,
                 baseline=learn_baseline(healthy, found, currents_only=currents_only) if healthy else None,
                 currents_only=currents_only,
+                lines=LineMemory(found.nameplate.rotor_bars),
             )
     repaired = (f"repaired: {note}" for note in recording.repairs)
     diagnosis = examined.diagnosis
     diagnosis = replace(diagnosis, reasons=(*diagnosis.reasons, *repaired))
     examined = replace(examined, diagnosis=diagnosis)
-    answer = classify_record(examined, found)
+    answer = classify_record(examined)
     if as_json:
         document = examined.as_dict() | {"classification": answer.as_dict()}
         source = str(found.parameters_source)
@@ -124,8 +136,9 @@ def _table(
     if diagnosis.mu_f is not None:
         table.add_row("equivalent fault level", level(diagnosis.mu_f, diagnosis.mu_f_ci95))
         table.add_row("detection limit", detection(diagnosis.detection_limit))
-    if diagnosis.phase is not None:
-        table.add_row("phase", diagnosis.phase)
+    phase = turns_phase_in_words(diagnosis.as_dict())
+    if phase:
+        table.add_row("phase", phase)
     if diagnosis.load_level is not None:
         table.add_row("load level", load(diagnosis.load_level, diagnosis.load_level_ci95))
     for reason in diagnosis.reasons:
@@ -156,6 +169,8 @@ def _table(
 
 def _add_what_is_beside(table: FittedTable, examined: Examined) -> None:
     rotor = examined.rotor
+    for words in speed_words(examined.speed):
+        table.add_row("speed", Text(words))
     table.add_row("rotor", Text(rotor_words(rotor)))
     sidebands = sideband_words(rotor)
     if sidebands is not None:

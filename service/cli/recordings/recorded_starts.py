@@ -8,11 +8,12 @@ from core.commissioning.errors import CommissioningError
 from core.commissioning.start_detection import start_of
 from core.error_words import one_line
 from core.machines.motor_file.reader import Plate
+from core.machines.table_layout import layout_of
 from core.recordings import Recording, RecordingError, read
 from service.cli.output import CommandError
 from service.client.recording_download import download_recording
 from service.client.rest_client import Document, ServiceClient
-from service.client.verdicts import to_the_second
+from service.client.verdicts import local_time
 
 MOST_STARTS = 5
 """So many of the latest starts are fitted together; more make the intervals hardly narrower."""
@@ -56,7 +57,7 @@ def fetch_starts(service: ServiceClient, plate: Plate, chosen: Sequence[str], fo
     for one in listed:
         if len(used) == MOST_STARTS and not chosen:
             break
-        name = f"{to_the_second(one['recorded_time'] or one['announced_time'])} ({one['id']})"
+        name = f"{local_time(one['recorded_time'] or one['announced_time'])} ({one['id']})"
         remark = None if chosen else one["operation_remark"]
         if remark is None:
             found = _usable(service, str(one["id"]), plate, folder)
@@ -88,7 +89,7 @@ def _usable(service: ServiceClient, recording_id: str, plate: Plate, folder: Pat
     """Return a recording, or why it cannot be used. Raises ServiceError, OSError."""
     entry = download_recording(service, recording_id, folder / recording_id)
     try:
-        recording = read(entry)
+        recording = read(entry, layout=layout_of(plate))
         start_of(recording, plate.nameplate, plate.channels, transformers=plate.transformers)
     except (RecordingError, CommissioningError) as error:
         return f"{error.field}: expected {error.expected}, found {error.found}"

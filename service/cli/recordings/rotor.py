@@ -8,16 +8,19 @@ from numpy.typing import NDArray
 from rich.text import Text
 
 from core.recordings import Quantity, RecordingError
-from core.recordings.columns import read_columns
+from core.recordings.tables.reading import TABLE_READERS, read_table
+from core.recordings.tables.table import Table
 from core.rotor.finding import decibels
+from core.rotor.one_phase import require_rate
 from core.rotor.one_phase_finding import OnePhaseFinding, examine_one_phase
+from core.signals.errors import SignalError
+from core.units import SECONDS_PER_MINUTE
 from service.cli.output import WRONG_USE, CommandError, facts_table, failing_clearly, print_document, results
 from service.cli.recordings.files import read_recording
 from service.client.rotor_and_supply import STATES
 
-TABLES = (".csv", ".tsv", ".txt")
-"""Suffixes of files with columns of numbers; all others are read as recordings."""
-SECONDS_PER_MINUTE = 60.0
+SAME_RATE = 0.01
+"""A rate that is given may differ from that of the file's times by so much, relatively."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,8 +55,11 @@ def examine_current(
             f"{one_pair_rpm / pairs:g} rpm with pole pairs {pairs} at {frequency_hz:g} Hz",
             exit_code=WRONG_USE,
         )
-    with failing_clearly(RecordingError, OSError):
+    with failing_clearly(RecordingError, SignalError, OSError):
+        if source.sample_rate_hz is not None:
+            require_rate(source.sample_rate_hz, slip, frequency_hz)
         current, rate_hz = _current(record, source)
+        require_rate(rate_hz, slip, frequency_hz)
         beside = (
             None if healthy is None else examine_one_phase(*_current(healthy, source), slip, frequency_hz)
         )
@@ -70,17 +76,32 @@ def examine_current(
 
 def _current(path: Path, source: Source) -> tuple[NDArray[np.float64], float]:
     """Return the samples and their rate. Raises RecordingError, OSError, CommandError (wrong use)."""
-    if path.suffix.lower() in TABLES:
-        table = read_columns(path)
-        rate_hz = source.sample_rate_hz or table.sample_rate_hz
-        if rate_hz is None:
-            expected = "a first column of times, or --rate with the sampling rate in Hz"
-            raise RecordingError(path, "sampling rate", expected=expected, found="neither")
-        return table.samples[_chosen(path, table.names, source.column)], rate_hz
+    if path.suffix.casefold() in TABLE_READERS:
+        table = read_table(path)
+        rate_hz = _rate_of(path, table, source.sample_rate_hz)
+        return table.columns[_chosen(path, table.names, source.column)].values, rate_hz
     recording = read_recording(path, lenient=False)
     rows = [k for k, channel in enumerate(recording.channels) if channel.quantity is Quantity.CURRENT]
     names = tuple(recording.channels[k].name for k in rows)
     return recording.samples[rows[_chosen(path, names, source.column)]], recording.sample_rate_hz
+
+
+def _rate_of(path: Path, table: Table, given_hz: float | None) -> float:
+    """Return the sampling rate by the file's times, or as it is given."""
+    told_hz = table.sample_rate_hz
+    if table.instants_s is not None:
+        expected = "rows at even steps of time: a spectrum has no other"
+        raise RecordingError(path, "column of times", expected=expected, found="gaps or several rates")
+    if told_hz is None and given_hz is None:
+        found = (
+            "neither" if table.numbered_by is None else f"only the number of the row ({table.numbered_by!r})"
+        )
+        expected = "a column of times, or --rate with the sampling rate in Hz"
+        raise RecordingError(path, "sampling rate", expected=expected, found=found)
+    if told_hz is not None and given_hz is not None and abs(given_hz / told_hz - 1.0) > SAME_RATE:
+        expected = f"the rate of the file's times, {told_hz:g} Hz"
+        raise RecordingError(path, "--rate", expected=expected, found=f"{given_hz:g} Hz")
+    return told_hz or given_hz or 0.0
 
 
 def _chosen(path: Path, names: tuple[str, ...], column: str | None) -> int:

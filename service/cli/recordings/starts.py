@@ -5,7 +5,7 @@ from itertools import islice
 from service.cli.output import failing_clearly
 from service.cli.rows import Column, print_rows, require_one_format
 from service.client.rest_client import Document, ServiceClient, ServiceError
-from service.client.verdicts import percent, to_the_second
+from service.client.verdicts import local_time, percent
 
 FIELDS = (
     "time", "source", "id", "recording_id", "is_from_rest", "is_reference", "acceleration_s",
@@ -22,7 +22,7 @@ def show_starts(url: str, motor: str, *, limit: int, as_csv: bool, as_json: bool
         found = service.list_starts(motor, limit=min(limit, 1000))
         starts = list(islice(found, limit))[::-1]
     columns: dict[str, Column] = {
-        "time": lambda one: to_the_second(one["time"]),
+        "time": lambda one: local_time(one["time"]),
         "run-up s": lambda one: _figure(one["acceleration_s"]),
         "peak A": lambda one: _figure(one["peak_current_A"]),
         "mean A": lambda one: _figure(one["mean_current_A"]),
@@ -33,7 +33,7 @@ def show_starts(url: str, motor: str, *, limit: int, as_csv: bool, as_json: bool
         "source": lambda one: str(one["source"]),
         "recording": lambda one: str(one["recording_id"] or "-"),
     }
-    print_rows("starts", starts, FIELDS, columns, as_csv=as_csv, as_json=as_json, whole=("recording",))
+    print_rows("starts", starts, FIELDS, columns, as_csv=as_csv, as_json=as_json)
 
 
 def _figure(value: object) -> str:

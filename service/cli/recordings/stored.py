@@ -10,7 +10,7 @@ from core.error_words import one_line
 from service.cli.output import failing_clearly, print_document, results
 from service.cli.rows import Column, print_rows, require_one_format
 from service.client.rest_client import Document, ServiceClient, ServiceError, segment
-from service.client.verdicts import to_the_second, verdict_text
+from service.client.verdicts import local_time, local_times, verdict_text
 
 FIELDS = (
     "recorded_time", "motor", "ied", "source", "name", "state", "operation", "operation_remark", "verdict",
@@ -36,10 +36,10 @@ def show_recordings(
     with failing_clearly(ServiceError), ServiceClient(url) as service:
         found = list(islice(service.list_recordings(limit=min(limit, 1000), **chosen), limit))
     columns: dict[str, Column] = {
-        "recorded": lambda one: to_the_second(one["recorded_time"] or one["announced_time"]),
+        "recorded": lambda one: local_time(one["recorded_time"] or one["announced_time"]),
         "motor": lambda one: str(one["motor"]),
-        "name": lambda one: str(one["name"]),
         "state": _state,
+        "name": lambda one: str(one["name"]),
         "id": lambda one: str(one["id"]),
     }
     if motor is not None:
@@ -48,7 +48,7 @@ def show_recordings(
     if not as_csv and not as_json:
         for one in found:
             if one["reason"]:
-                words = one_line(f"{one['motor']}, {one['name']}: {one['state']}: {one['reason']}")
+                words = local_times(f"{one['motor']}, {one['name']}: {one['state']}: {one['reason']}")
                 results().print(Text(words), soft_wrap=True)
 
 

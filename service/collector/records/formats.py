@@ -1,7 +1,8 @@
 """One event, one recording, though a relay may write it in several formats.
 
 SEL relays number their events and write each as COMTRADE (HR_10007.CFG, .DAT, .HDR) and as Compressed ASCII,
-raw (CR_10007.CEV) and filtered (C4_10007.CEV); others give all formats of an event one name.
+raw (CR_10007.CEV) and filtered (C4_10007.CEV). GE's UR relays offer each as COMTRADE of floating point
+(OSC32F007), binary (OSC16B007) and ASCII (OSCA007). Others give all formats of an event one name.
 """
 
 import re
@@ -13,6 +14,7 @@ from service.collector.records.life import Life, RecordState
 from service.collector.records.listing import ListedRecord, RefusedFile
 
 _NUMBERED = re.compile(r"(?:HR|C[R0-9]\d?)_(\d{5,})")
+_OSCILLOGRAPHY = re.compile(r"OSC(32F|16B|A)(\d+)")
 _RAW = "CR_"
 
 
@@ -34,10 +36,10 @@ class Chosen:
 def one_format_an_event(states: Iterable[RecordState]) -> Chosen:
     """Choose one format of each event.
 
-    COMTRADE comes before event reports, unless the event is in the store in another format. Incomplete
-    records are taken only where there is nothing else. Refused ones are not pulled: they stand for their
-    event only where each of its formats is refused. Where two folders have a record of one name and format,
-    each folder numbers its own events.
+    COMTRADE comes before event reports, and its finest values before others, unless the event is in the
+    store in another format. Incomplete records are taken only where there is nothing else. Refused ones
+    are not pulled: they stand for their event only where each of its formats is refused. Where two
+    folders have a record of one name and format, each folder numbers its own events.
     """
     events: dict[str, list[RecordState]] = {}
     for state in states:
@@ -92,22 +94,27 @@ def _event(record: ListedRecord) -> str:
     """Return what all formats of one event have in common."""
     name = record.name.upper()
     numbered = _NUMBERED.fullmatch(name)
-    return name if numbered is None else numbered[1]
+    if numbered is not None:
+        return numbered[1]
+    oscillography = _OSCILLOGRAPHY.fullmatch(name)
+    return name if oscillography is None else f"OSC {oscillography[2]}"
 
 
-_EVENT_REPORT = 2
+_FINEST, _COMTRADE, _COARSEST, _COMBINED, _EVENT_REPORT = range(5)
 
 
 def _rank(record: ListedRecord) -> int:
     """Return the place of a record's format among the formats.
 
-    The order is: COMTRADE, combined COMTRADE, event report of raw samples, any other event report, and last
-    a record that holds only what belongs beside COMTRADE.
+    The order is: COMTRADE (floating point, binary, ASCII, where its name says that), combined COMTRADE,
+    event report of raw samples, any other event report, and last a record that holds only what belongs
+    beside COMTRADE.
     """
     if record.suffixes & {".CFG", ".DAT"}:
-        return 0
+        named = _OSCILLOGRAPHY.fullmatch(record.name.upper())
+        return {"32F": _FINEST, "A": _COARSEST}.get(named[1] if named else "", _COMTRADE)
     if ".CFF" in record.suffixes:
-        return 1
+        return _COMBINED
     if ".CEV" in record.suffixes:
         return _EVENT_REPORT if record.name.upper().startswith(_RAW) else _EVENT_REPORT + 1
     return _EVENT_REPORT + 2

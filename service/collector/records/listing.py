@@ -8,6 +8,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
+from core.recordings.reading import recording_name
+
 REQUIRED_SUFFIXES = (".CFG", ".DAT")
 OPTIONAL_SUFFIXES = (".HDR", ".INF")
 WHOLE_SUFFIXES = (".CFF", ".CEV")
@@ -150,7 +152,7 @@ def _understand_one(folder: FolderListing) -> Listing:
             if len(ignored) < MOST_IGNORED:
                 ignored.append(RefusedFile(printable(entry.name), _why_ignored(entry.name)))
             continue
-        local_name = last_component(entry.name)
+        local_name = kept_name(entry.name)
         suffix = _suffix(local_name)
         reason = objection(entry.name, directory)
         stem = local_name[: -len(suffix)].upper()
@@ -172,7 +174,7 @@ def _understand_one(folder: FolderListing) -> Listing:
 def _listed_file(entry: FileEntry, directory: str) -> ListedFile:
     return ListedFile(
         remote_name=remote_name(entry.name, directory),
-        local_name=last_component(entry.name),
+        local_name=kept_name(entry.name),
         size=entry.size,
         modified_ns=entry.modified_ns,
     )
@@ -180,7 +182,7 @@ def _listed_file(entry: FileEntry, directory: str) -> ListedFile:
 
 def is_of_a_record(name: str) -> bool:
     """Return whether a file, by its name alone, belongs to a recording."""
-    return _suffix(last_component(name)) in RECORD_SUFFIXES
+    return _suffix(kept_name(name)) in RECORD_SUFFIXES
 
 
 def printable(name: str) -> str:
@@ -212,6 +214,11 @@ def objection(name: str, directory: str) -> str | None:
 def last_component(name: str) -> str:
     """Return the name without its folders. Relays separate them with either slash."""
     return _posix(name).rpartition("/")[2]
+
+
+def kept_name(name: str) -> str:
+    """Return the name to keep a file under: of an event report C8_10001.TXT, that is C8_10001.CEV."""
+    return recording_name(last_component(name))
 
 
 def remote_name(name: str, directory: str) -> str:

@@ -11,6 +11,8 @@ from service.collector.gateway.process import gateway_id
 from service.collector.session.quarantine import QuarantinePolicy
 from service.collector.session.visit_marks import VisitMarks
 from service.collector.supervision.crash_blame import blame_after_end
+from service.configuration.environment import BUCKET
+from service.configuration.relay_access import PASSWORD_VARIABLE
 from service.configuration.settings import Settings
 from service.plant import Plant
 from service.plant.handover import plant_to_bytes
@@ -35,6 +37,7 @@ class GatewayProcesses:
         self._settings = settings
         self._repository = repository
         handed = plant_to_bytes(plant)
+        secrets = (PASSWORD_VARIABLE,) if settings.recordings_url is None else (PASSWORD_VARIABLE, BUCKET)
         gateways = -(-len(plant.relays) // settings.relays_per_gateway)
         self._ids = [gateway_id(settings, number) for number in range(gateways)]
         self._supervisors = [
@@ -43,6 +46,7 @@ class GatewayProcesses:
                 (*COMMAND, str(number)),
                 settings,
                 handed=handed,
+                secrets=secrets,
                 on_exit=partial(self._handle_exit, number, name),
             )
             for number, name in enumerate(self._ids)

@@ -30,8 +30,9 @@ from mms import (
 from service.collector.records.scan import Scan
 from service.collector.triggers.listed_before import ListedBefore, listed_in
 from service.collector.triggers.request_deadlines import RequestDeadlines, UnansweredRequests
-from service.collector.triggers.series import NoSeriesError, SeriesUnderWay, rhythm_of
+from service.collector.triggers.series import SeriesUnderWay
 from service.plant import Acquisition, Relay, TriggerAction, acquisition_from_scl
+from service.plant.series_rhythm import NoSeriesError, rhythm_of
 from service.storage import Repository
 from service.storage.records import RecordingRequest, RemoteRecord
 from service.storage.states import IN_THE_RELAY, RecordingRequestState

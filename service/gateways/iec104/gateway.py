@@ -10,6 +10,7 @@ from service.configuration.gateways.iec104 import Iec104Settings
 from service.gateways.context import GatewayContext
 from service.gateways.iec104.points import (
     GONE,
+    LIKELY_PHASES,
     MOST_MOTORS,
     POINTS,
     SINGLE,
@@ -31,7 +32,7 @@ NUMBERS: Final = "iec104-numbers.json"
 MAP: Final = "iec104-map.csv"
 LOOK_S: Final = 1.0
 """Longest wait for a change before it is seen whether the service is gone."""
-KINDS: Final = (*(point.kind for point in POINTS), SINGLE)
+KINDS: Final = (*(point.kind for point in POINTS), SINGLE, *(point.kind for point in LIKELY_PHASES))
 """Of the points of a motor, in the order of their addresses."""
 
 
@@ -142,7 +143,8 @@ class PlantStation:
 
 
 def _said_of_motor(motor: MotorFigures, state: PlantState) -> list[Said]:
-    return [*(said_of(point, motor, state) for point in POINTS), link_of(motor, state)]
+    said, likely = ([said_of(point, motor, state) for point in points] for points in (POINTS, LIKELY_PHASES))
+    return [*said, link_of(motor, state), *likely]
 
 
 def _map_rows(numbers: Mapping[str, int]) -> list[tuple[str, int]]:

@@ -5,8 +5,10 @@ docs/integration.md has the addresses; a test compares the two.
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Final
 
+from core.condition.assessment import PHASES
 from core.condition.kinds import State
 from service.gateways.iec104.telegrams import Type, Value, scaled, short_float, single_point
 from service.gateways.kind_codes import KIND_CODES
@@ -69,6 +71,10 @@ def _end(interval: tuple[float, float] | None, which: int) -> float | None:
     return None if interval is None else PERCENT * interval[which]
 
 
+def _of_phase(which: int, motor: MotorFigures) -> float | None:
+    return None if motor.phase_probabilities is None else PERCENT * motor.phase_probabilities[which]
+
+
 WORSE: Final = (State.WATCH, State.FAULT)
 POINTS: Final = (
     MotorPoint(SINGLE, "Watch or fault", lambda one: one.state in WORSE),
@@ -85,6 +91,11 @@ POINTS: Final = (
 )
 RELAY_ANSWERS: Final = len(POINTS)
 """Offset of the point that tells whether the motor's relay answers."""
+LIKELY_PHASES: Final = tuple(
+    MotorPoint(FLOAT, f"Probability of phase {phase}, if shorted turns [%]", partial(_of_phase, which))
+    for which, phase in enumerate(PHASES)
+)
+"""The points after that one."""
 
 
 def address(number: int, offset: int) -> int:

@@ -9,11 +9,13 @@ from typing import Final
 from lxml import etree
 from lxml.builder import ElementMaker
 
+from core.condition.assessment import PHASES
+
 NAMESPACE: Final = "http://www.iec.ch/61850/2003/SCL"
 TEMPLATE: Final = "TEMPLATE"
 """Name of the IED in an ICD, which describes what can be had; an IID has the real one."""
 
-CONFIGURATION_REVISION: Final = "2"
+CONFIGURATION_REVISION: Final = "3"
 """Of reports (confRev) and logical devices (configRev). Count it up when a data set gets other members."""
 
 ACCESS_POINT: Final = "S1"
@@ -29,6 +31,7 @@ ANALOGUES: Final = (
     "detection limit of the latest record [%]",
     "load [% of rated]",
     "change of the level since the reference [%]",
+    *(f"probability of phase {phase}, if shorted turns [%]" for phase in PHASES),
 )
 """What GGIO1.AnIn1 and so on are."""
 

@@ -36,7 +36,8 @@ def motor_values(device: str, motor: MotorFigures, relay: RelayFigures | None) -
     """Return the attributes of a motor's logical device. device: its name with that of the IED."""
     quality, time = quality_of(motor), _time(motor.as_of_ns)
     low, high = motor.mu_f_ci95 or (None, None)
-    figures = (motor.mu_f, low, high, motor.detection_limit, motor.load_level, motor.change)
+    likely = motor.phase_probabilities or (None, None, None)
+    figures = (motor.mu_f, low, high, motor.detection_limit, motor.load_level, motor.change, *likely)
     values: Values = {
         **_state(f"{device}/ZMOT1.EEHealth", HEALTHS[motor.device_health], quality, time),
         **_phases(f"{device}/GAPC1.Str", motor, (State.WATCH, State.FAULT), quality, time),

@@ -46,7 +46,7 @@ LINKS: Final = (LinkState.UNKNOWN, LinkState.UP, LinkState.DOWN, LinkState.QUARA
 LARGEST: Final = 0xFFFF
 
 _HEADER = struct.Struct(">HHHHI HH")
-_BLOCK = struct.Struct(">10H 6f II")
+_BLOCK = struct.Struct(">10H 6f II 3f")
 assert _BLOCK.size <= 2 * BLOCK  # noqa: S101 - the map is wrong otherwise
 
 
@@ -94,6 +94,7 @@ def _block(motor: MotorFigures, state: PlantState) -> list[int]:
         ),
         (motor.as_of_ns or 0) // NANOSECONDS_PER_SECOND,
         (motor.since_ns or 0) // NANOSECONDS_PER_SECOND,
+        *(motor.phase_probabilities or [math.nan] * 3),
     )
 
 
@@ -122,6 +123,7 @@ NOTHING_KNOWN: Final = tuple(
         *[math.nan] * 6,
         0,
         0,
+        *[math.nan] * 3,
     )
 )
 """A block before the first reading, and one that no motor in service has."""

@@ -32,7 +32,7 @@ def own_certificate(data_directory: Path, application_uri: str, host: str) -> tu
             serialization.PrivateFormat.PKCS8,
             serialization.NoEncryption(),
         )
-        replace_file(key, pem, private=True)
+        replace_file(key, pem)
         signed = _signed(private, application_uri, host)
         replace_file(certificate, signed.public_bytes(serialization.Encoding.DER))
     return certificate, key

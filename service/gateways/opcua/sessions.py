@@ -15,6 +15,7 @@ from asyncua.server.internal_server import InternalServer
 
 from service.gateways.opcua import limits
 from service.gateways.opcua.subscriptions import Owners, SubscribingSession
+from service.gateways.opcua.timestamps import check_timestamps, stamped
 from service.gateways.opcua.users import PlantUser
 
 TOKEN_BYTES: Final = 32
@@ -49,7 +50,8 @@ class BoundSession(SubscribingSession):
 
     async def read(self, params: Any) -> Any:
         limits.check_operations(limits.READ, params.NodesToRead)
-        return await super().read(params)
+        check_timestamps(params.TimestampsToReturn)
+        return [stamped(value, params.TimestampsToReturn) for value in await super().read(params)]
 
     async def write(self, params: Any) -> Any:
         limits.check_operations(limits.WRITE, params.NodesToWrite)
@@ -57,6 +59,7 @@ class BoundSession(SubscribingSession):
 
     async def history_read(self, params: Any) -> Any:
         limits.check_operations(limits.HISTORY_READ, params.NodesToRead)
+        check_timestamps(params.TimestampsToReturn, may_be_neither=False)
         return await super().history_read(params)
 
     async def browse(self, params: Any) -> Any:

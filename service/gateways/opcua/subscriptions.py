@@ -14,6 +14,7 @@ from asyncua.server.internal_session import InternalSession, SessionState
 from asyncua.server.internal_subscription import InternalSubscription
 
 from service.gateways.opcua import limits
+from service.gateways.opcua.timestamps import check_timestamps
 from service.gateways.opcua.users import PlantUser
 
 UNKNOWN: Final = ua.StatusCodes.BadSubscriptionIdInvalid
@@ -77,6 +78,7 @@ class SubscribingSession(InternalSession):  # type: ignore[misc]
     async def create_monitored_items(self, params: Any) -> list[Any]:
         self._check(params.SubscriptionId)
         limits.check_operations(limits.MONITOR, params.ItemsToCreate)
+        check_timestamps(params.TimestampsToReturn)
         room = max(limits.MONITORED_ITEMS - _items(self._held()), 0)
         made = await super().create_monitored_items(
             replace(params, ItemsToCreate=params.ItemsToCreate[:room])

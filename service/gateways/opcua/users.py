@@ -16,10 +16,11 @@ from asyncua.server.user_managers import UserManager
 from sqlalchemy.exc import SQLAlchemyError
 
 from core.error_words import one_line
-from service.access.logins import LoginLockedError, LoginRefusedError, account_of, attempt, check_password
+from service.access.logins import LoginLockedError, LoginRefusedError, account_of, attempt, check_login
 from service.access.permissions import Permission, permissions_of
 from service.configuration.access import AccessSettings
 from service.gateways.opcua.worker_threads import WorkerThreads
+from service.process.sealing import Seal
 from service.storage import NotFoundError, Repository
 from service.storage.records import Actor
 from service.storage.records import User as Account
@@ -83,6 +84,7 @@ def _kept(account: Account) -> tuple[object, ...]:
         account.disabled,
         account.password_set_ns,
         account.sessions_ended_ns,
+        account.second_factor_ns,
     )
 
 
@@ -118,6 +120,9 @@ class ServiceUsers(UserManager):  # type: ignore[misc]
         try:
             account = await self._threads.run(partial(self._account, wanted, password, address))
             user = PlantUser(UserRole.User, account.name, account, address)
+            if account.must_change_password:
+                told.warning("a client is not let in", reason="somebody else set the password (mcc password)")
+                raise ServiceError(ua.StatusCodes.BadUserAccessDenied)
             if not user.may(Permission.VIEW):
                 raise ServiceError(ua.StatusCodes.BadUserAccessDenied)
             await self._threads.run(partial(self._note_login, actor_of(account, address)))
@@ -152,7 +157,8 @@ class ServiceUsers(UserManager):  # type: ignore[misc]
         now_ns = time.time_ns()
         attempt(self._repository, self._settings, name, address, now_ns=now_ns)
         account = self._known(name)  # before its password, which may be changed meanwhile
-        check_password(self._repository, name, password, address, now_ns=now_ns)
+        # OPC UA has no place for a code: who needs one is refused, and programs have users of their own.
+        check_login(self._repository, self._settings, _no_seal, name, password, None, address, now_ns=now_ns)
         if account is None:
             raise LoginRefusedError
         return account
@@ -166,6 +172,10 @@ class ServiceUsers(UserManager):  # type: ignore[misc]
             return self._repository.user(name)
         except NotFoundError:
             return None
+
+
+def _no_seal() -> Seal:
+    raise LoginRefusedError
 
 
 @contextmanager

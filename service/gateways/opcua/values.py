@@ -82,7 +82,9 @@ def _change_high(motor: MotorFigures) -> float | None:
 MOTOR_VARIABLES: Final = (
     MotorVariable("State", STRING, "healthy, watch, fault or unknown", lambda one: str(one.state)),
     MotorVariable("Kind", STRING, "what stands out", lambda one: str(one.kind)),
-    MotorVariable("Phase", STRING, "phase of shorted turns", lambda one: one.phase),
+    MotorVariable("Finding", STRING, "what stands out, in words", lambda one: one.finding),
+    MotorVariable("Phase", STRING, "phase of what stands out", lambda one: one.phase),
+    MotorVariable("LikelyPhases", STRING, "phases that it may be in", lambda one: one.likely_phases),
     MotorVariable("FaultLevel", DOUBLE, "share of the phase's turns", lambda one: one.mu_f),
     MotorVariable("FaultLevelLow", DOUBLE, "lower end of its 95 % interval", _level_low),
     MotorVariable("FaultLevelHigh", DOUBLE, "upper end of its 95 % interval", _level_high),

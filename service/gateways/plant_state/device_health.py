@@ -5,7 +5,6 @@ from enum import StrEnum
 from typing import Final
 
 from core.condition.kinds import Kind, State
-from core.rotor.finding import RotorState
 from service.storage.states import LinkState
 
 
@@ -21,17 +20,11 @@ class DeviceHealth(StrEnum):
     FAILURE = "failure"
 
 
-_ORDER: Final = tuple(DeviceHealth)
-
 _OF_STATE: Final[Mapping[State, DeviceHealth]] = {
     State.HEALTHY: DeviceHealth.NORMAL,
     State.WATCH: DeviceHealth.MAINTENANCE_REQUIRED,
     State.FAULT: DeviceHealth.FAILURE,
     State.UNKNOWN: DeviceHealth.CHECK_FUNCTION,
-}
-_OF_ROTOR: Final[Mapping[RotorState, DeviceHealth]] = {
-    RotorState.WATCH: DeviceHealth.MAINTENANCE_REQUIRED,
-    RotorState.FAULT: DeviceHealth.FAILURE,
 }
 _OF_LINK: Final[Mapping[LinkState, DeviceHealth]] = {
     LinkState.UP: DeviceHealth.NORMAL,
@@ -41,16 +34,10 @@ _OF_LINK: Final[Mapping[LinkState, DeviceHealth]] = {
 }
 
 
-def health_of_motor(state: State, kind: Kind, *, stale: bool, rotor: RotorState | None) -> DeviceHealth:
-    """Return the health of a motor: the worse one of what is said of its winding and of its rotor.
-
-    rotor: what its standing alarm says; None where none stands.
-    """
-    of_winding = DeviceHealth.OFF_SPEC if kind is Kind.SUPPLY else _OF_STATE[state]
-    if stale and of_winding is not DeviceHealth.FAILURE:
-        of_winding = DeviceHealth.CHECK_FUNCTION
-    of_rotor = DeviceHealth.NORMAL if rotor is None else _OF_ROTOR.get(rotor, DeviceHealth.NORMAL)
-    return max(of_winding, of_rotor, key=_ORDER.index)
+def health_of_motor(state: State, kind: Kind, *, stale: bool) -> DeviceHealth:
+    """Return the health of a motor by the state of its worst part, and what that part has."""
+    health = DeviceHealth.OFF_SPEC if kind is Kind.SUPPLY else _OF_STATE[state]
+    return DeviceHealth.CHECK_FUNCTION if stale and health is not DeviceHealth.FAILURE else health
 
 
 def health_of_relay(link: LinkState) -> DeviceHealth:

@@ -5,8 +5,9 @@ from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import TypeVar
 
-from core.condition.assessment import Phase
+from core.condition.assessment import Phase, Phases
 from core.condition.kinds import Kind, State
+from core.diagnosis.phase_words import phase_in_words
 from core.rotor.finding import RotorState
 from service.gateways.plant_state.device_health import DeviceHealth
 from service.gateways.plant_state.running_state import RunningState
@@ -26,9 +27,11 @@ class Quality(StrEnum):
 class MotorFigures:
     """What is told of a motor.
 
-    phase: of shorted turns.  mu_f: total level of the fault, a fraction of the phase's turns.  change: level
-    since the reference; each with its 95 % interval.  detection_limit, load_level: of the latest record that
-    has them.  rotor: what its standing alarm says.  device_health: the worst of all that.
+    finding: what is the matter, in words.  phase: of what was found; None where it is not sure.
+    phase_probabilities: of a, b and c, where shorted turns were found or may be; None otherwise.
+    mu_f: total level of the fault, a fraction of the phase's turns.  change: level since the reference; each
+    with its 95 % interval.  detection_limit, load_level: of the latest record that has them.
+    rotor: watch or fault, else None.  device_health: by the state.
     since_ns: when the state began.  as_of_ns: time of the latest record in it, and of all values.
     voltage_unbalance, current_unbalance: negative over positive sequence, of the latest record that has them,
     at unbalance_ns.  running_ns: when it was seen to run or stand, or its link ended;
@@ -43,7 +46,9 @@ class MotorFigures:
     relay: str
     state: State
     kind: Kind
+    finding: str
     phase: Phase | None
+    phase_probabilities: Phases | None
     mu_f: float | None
     mu_f_ci95: tuple[float, float] | None
     change: float | None
@@ -67,6 +72,11 @@ class MotorFigures:
     running: RunningState
     running_ns: int | None
     running_quality: Quality
+
+    @property
+    def likely_phases(self) -> str:
+        """Return the phase that was found or the likely ones, in words; empty where nothing is known."""
+        return self.phase or phase_in_words(self.phase_probabilities)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

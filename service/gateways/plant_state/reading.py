@@ -1,11 +1,16 @@
 """Reads from the database what gateways tell."""
 
 from collections.abc import Callable, Iterator
+from typing import Final
 
 from core.condition.kinds import State
 from core.condition.verdict.advice import advice
+from core.condition.verdict.phase_words import turns_phases
+from core.motor_condition.parts import Part
+from core.rotor.finding import RotorState
 from core.units import NANOSECONDS_PER_DAY
 from service.condition.staleness import is_stale, stale_after_ns
+from service.condition.wording import cause
 from service.gateways.plant_state.device_health import health_of_motor, health_of_relay
 from service.gateways.plant_state.figures import MotorFigures, PlantState, Quality, RelayFigures
 from service.gateways.plant_state.running_state import RunningState, running_state
@@ -55,7 +60,7 @@ def _motor(
     condition = one.condition
     oldest_ns = stale_after_ns(one.motor.schedule, stale_after_days)
     stale = is_stale(condition, now_ns, oldest_ns)
-    rotor = None if one.rotor is None else one.rotor.state
+    rotor = _ROTORS.get(condition.state_of(Part.ROTOR))
     quality, reason = _quality(one, now_ns, stale=stale)
     running = running_state(one.link, condition.as_of_ns, condition.stood_ns)
     seen_ns = max(condition.as_of_ns or 0, condition.stood_ns or 0)
@@ -67,7 +72,11 @@ def _motor(
         relay=one.motor.ied,
         state=condition.state,
         kind=condition.kind,
+        finding=cause(condition),
         phase=condition.phase,
+        phase_probabilities=turns_phases(
+            (condition.kind, *condition.candidates), condition.phase_probabilities
+        ),
         mu_f=condition.mu_f,
         mu_f_ci95=condition.mu_f_ci95,
         change=condition.change,
@@ -75,7 +84,7 @@ def _motor(
         detection_limit=None if one.figures is None else one.figures.detection_limit,
         load_level=None if one.figures is None else one.figures.load_level,
         rotor=rotor,
-        device_health=health_of_motor(condition.state, condition.kind, stale=stale, rotor=rotor),
+        device_health=health_of_motor(condition.state, condition.kind, stale=stale),
         since_ns=condition.since_ns,
         as_of_ns=condition.as_of_ns,
         stale=stale,
@@ -92,6 +101,9 @@ def _motor(
         running_ns=one.link_changed_ns if running is RunningState.UNKNOWN else seen_ns,
         running_quality=Quality.GOOD if is_seen_lately else Quality.UNCERTAIN,
     )
+
+
+_ROTORS: Final = {State.WATCH: RotorState.WATCH, State.FAULT: RotorState.FAULT}
 
 
 def _quality(one: FleetMotor, now_ns: int, *, stale: bool) -> tuple[Quality, str | None]:

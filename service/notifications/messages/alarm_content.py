@@ -1,14 +1,13 @@
 """What a message about alarms says: one of them in full, several one below the other, very many counted."""
 
 from collections.abc import Mapping, Sequence
-from datetime import datetime
 from urllib.parse import quote
 
 from core.time_stamps import rfc3339
+from core.time_words import clock
 from service.alarms.catalogue import CATALOGUE, AlarmDescription
 from service.alarms.kinds import AlarmKind
 from service.configuration.notifications import NotificationSettings
-from service.notifications.hours import local
 from service.notifications.messages.content import Content, Section
 from service.notifications.messages.told_alarm import ToldAlarm, told_alarms
 from service.senders.message import Line, Severity
@@ -20,7 +19,7 @@ MOST_TOLD = 20
 
 URGENT_FIRST: Sequence[Severity] = ("critical", "high", "medium", "low")
 
-HINT = "mcc alarms acknowledge ID says that you look after it. Nobody reads what is answered to this message."
+HINT = "mcc alarms acknowledge ID says that you look after it. Do not reply."
 
 
 def alarm_content(
@@ -152,21 +151,27 @@ def _description(kind: str) -> AlarmDescription | None:
 
 
 def _clock(time_ns: int, settings: NotificationSettings) -> str:
-    at: datetime = local(time_ns, settings.time_zone)
-    return f"{at:%Y-%m-%d %H:%M:%S} {at.tzname()}"
+    return clock(time_ns, settings.time_zone, seconds=True)
 
 
-def _links(alarm: ToldAlarm, address: str | None) -> list[tuple[str, str]]:
-    """Return the addresses of what the alarm is about, where people reach the service."""
+def _links(alarm: ToldAlarm, address: str | None, *, of_motor: str = "") -> list[tuple[str, str]]:
+    """Return the addresses of what the alarm is about, below the one by which the service is reached.
+
+    of_motor: what follows the name of a motor.
+    """
     if address is None:
         return []
-    api = f"{address}/api/v1"
-    found = [("alarm", f"{api}/alarms/{quote(alarm.id, safe='')}")]
+    found = [("alarm", f"{address}/alarms/{quote(alarm.id, safe='')}")]
     if alarm.motor is not None:
-        found.append(("motor", f"{api}/motors/{quote(alarm.motor, safe='')}/health"))
+        found.append(("motor", f"{address}/motors/{quote(alarm.motor, safe='')}{of_motor}"))
     if alarm.recording_id is not None:
-        found.append(("recording", f"{api}/recordings/{quote(alarm.recording_id, safe='')}"))
+        found.append(("recording", f"{address}/recordings/{quote(alarm.recording_id, safe='')}"))
     return found
+
+
+def _api_links(alarm: ToldAlarm, address: str | None) -> list[tuple[str, str]]:
+    """Return the same for programs."""
+    return _links(alarm, None if address is None else f"{address}/api/v1", of_motor="/health")
 
 
 def _lines(
@@ -243,5 +248,5 @@ def _alarm_document(alarm: ToldAlarm, address: str | None) -> Mapping[str, objec
         "state": alarm.state,
         "standing": alarm.standing,
         "raised_time": rfc3339(alarm.raised_ns),
-        "links": dict(_links(alarm, address)),
+        "links": dict(_api_links(alarm, address)),
     }

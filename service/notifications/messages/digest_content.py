@@ -2,10 +2,11 @@
 
 from collections.abc import Mapping
 
+from core.condition.verdict.phase_words import kinds_in_words
 from core.terms import phrase
 from core.time_stamps import rfc3339
+from core.time_words import clock, day
 from service.configuration.notifications import NotificationSettings
-from service.notifications.hours import local
 from service.notifications.messages.content import Content, Section
 from service.senders.message import Line, Severity
 from service.storage.records import Notification
@@ -23,12 +24,13 @@ def digest_content(
     motors = _table(facts, "motors")
     attention = [one for one in _list(facts, "attention") if isinstance(one, Mapping)]
     found = pictures or {}
-    period = str(facts["period"])
-    day = f"{local(_number(facts, 'to_ns'), settings.time_zone):%Y-%m-%d}"
+    period, zone = str(facts["period"]), settings.time_zone
     states = ", ".join(f"{number} {state}" for state, number in motors.items()) or "no motors"
-    subject = f"StatorWatch, {period} digest of {day}: {states}"
+    subject = f"StatorWatch, {period} digest of {day(_number(facts, 'to_ns'), zone)}: {states}"
     sections = [_overview(facts)]
-    sections += [_motor(one, picture_key(number) in found, number) for number, one in enumerate(attention)]
+    sections += [
+        _motor(one, picture_key(number) in found, number, zone) for number, one in enumerate(attention)
+    ]
     times = {"from_time": rfc3339(_number(facts, "from_ns")), "to_time": rfc3339(_number(facts, "to_ns"))}
     document = {
         "id": notification.id,
@@ -56,15 +58,15 @@ def picture_key(number: int) -> str:
 
 
 def _intro(facts: Mapping[str, object], settings: NotificationSettings) -> str:
-    begin, end = (local(_number(facts, key), settings.time_zone) for key in ("from_ns", "to_ns"))
+    begin, end = (clock(_number(facts, key), settings.time_zone) for key in ("from_ns", "to_ns"))
     sites = _list(facts, "sites")
     where = f", sites {', '.join(map(str, sites))}" if sites else ""
-    return f"From {begin:%Y-%m-%d %H:%M} to {end:%Y-%m-%d %H:%M} {end.tzname()}{where}."
+    return f"From {begin} to {end}{where}."
 
 
 def _overview(facts: Mapping[str, object]) -> Section:
     lines = [("motors", _counted(_table(facts, "motors"), "none"))]
-    lines.append(("alarms that called", _counted(_table(facts, "alarms_raised"), "none")))
+    lines.append(("alarms raised", _counted(_table(facts, "alarms_raised"), "none")))
     lines.append(("alarms now", _counted(_table(facts, "alarms_open"), "none")))
     lines.append(("links that are not up", _named(facts.get("links_not_up"), "relays")))
     lines.append(("without a recent record", _named(facts.get("stale"), "motors")))
@@ -74,10 +76,13 @@ def _overview(facts: Mapping[str, object]) -> Section:
     return Section(heading="The plant", severity="info", facts=lines)
 
 
-def _motor(facts: Mapping[str, object], has_picture: bool, number: int) -> Section:
+def _motor(facts: Mapping[str, object], has_picture: bool, number: int, zone: str) -> Section:
     state = str(facts["state"])
-    cause = phrase(str(facts["kind"]))
-    phase = f" in phase {facts['phase']}" if facts.get("phase") else ""
+    known, likely = facts.get("phase"), facts.get("phase_probabilities")
+    told = None if known is None else str(known)
+    kinds, shares = [str(facts["kind"])], likely if isinstance(likely, list) else None
+    cause = str(facts.get("finding") or kinds_in_words(kinds, told, shares, phrase))
+    phase = "" if told is None else f" in phase {told}"
     lines = []
     mu_f, interval = facts.get("mu_f"), facts.get("mu_f_ci95")
     if isinstance(mu_f, int | float):
@@ -85,7 +90,7 @@ def _motor(facts: Mapping[str, object], has_picture: bool, number: int) -> Secti
         lines.append(("level", f"{100 * mu_f:.2f} %{between}"))
     since_ns = facts.get("since_ns")
     if isinstance(since_ns, int):
-        lines.append(("since", f"{rfc3339(since_ns)[:10]}"))
+        lines.append(("since", day(since_ns, zone)))
     if facts.get("advice"):
         lines.append(("what to do", str(facts["advice"])))
     return Section(

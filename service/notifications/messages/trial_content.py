@@ -1,6 +1,7 @@
 """What a test message says."""
 
 from core.time_stamps import rfc3339
+from core.time_words import clock
 from service.notifications.messages.content import Content, Section
 from service.senders.message import Line
 from service.storage.records import Notification
@@ -8,7 +9,7 @@ from service.storage.records import Notification
 SUBJECT = "StatorWatch: a test of notifications"
 
 
-def trial_content(notification: Notification) -> Content:
+def trial_content(notification: Notification, zone: str) -> Content:
     """Return what a test says: who asked for it, and that nothing is wrong."""
     facts = notification.document or {}
     by = str(facts.get("by", ""))
@@ -27,7 +28,7 @@ def trial_content(notification: Notification) -> Content:
         facts=[
             ("channel", notification.channel),
             ("asked for by", by),
-            ("at", rfc3339(notification.created_ns)),
+            ("at", clock(notification.created_ns, zone, seconds=True)),
         ],
     )
     return Content(

@@ -1,8 +1,11 @@
 """A stored message written out in all the forms that channels take, with the trends of its motors."""
 
+from dataclasses import replace
+
 import structlog
 
 from core.condition.kinds import State
+from core.time_words import with_clock_times
 from service.configuration.notifications import NotificationSettings
 from service.notifications.messages.alarm_content import alarm_content
 from service.notifications.messages.content import Content
@@ -41,6 +44,7 @@ def message_of(
         )
     else:
         content = _content(notification, settings, repository, with_pictures=with_pictures)
+    content = _in_zone(content, settings.time_zone)
     return Message(
         id=notification.id,
         created_ns=notification.created_ns,
@@ -56,6 +60,15 @@ def message_of(
     )
 
 
+def _in_zone(content: Content, zone: str) -> Content:
+    """Return what a message says, with times of a zone within the sentences of the service."""
+    sections = [
+        replace(one, facts=[(name, with_clock_times(words, zone)) for name, words in one.facts])
+        for one in content.sections
+    ]
+    return replace(content, subject=with_clock_times(content.subject, zone), sections=sections)
+
+
 def _content(
     notification: Notification,
     settings: NotificationSettings,
@@ -65,7 +78,7 @@ def _content(
 ) -> Content:
     match notification.kind:
         case NotificationKind.TEST:
-            return trial_content(notification)
+            return trial_content(notification, settings.time_zone)
         case NotificationKind.DIGEST:
             names = _motors_of_digest(notification)[:MOST_PICTURES] if with_pictures else []
             wanted = {picture_key(number): name for number, name in enumerate(names)}

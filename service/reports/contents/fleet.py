@@ -29,7 +29,7 @@ MOTORS = (
     Column("from", ColumnKind.SHARE),
     Column("to", ColumnKind.SHARE),
     Column("change", ColumnKind.SHARE),
-    Column("seen from", ColumnKind.SHARE),
+    Column("detection limit", ColumnKind.SHARE),
     Column("latest record", ColumnKind.TIME, width=1.8),
     Column("data", width=1.5),
 )
@@ -61,9 +61,9 @@ def fleet_document(
             Block("Summary", [_summary(repository, motors, period, sites)]),
             Block("What needs attention", _attention(motors, zone)),
             Block("Motors", [_motors(motors)]),
-            Block("What changed", [_changes(repository, motors, period)]),
+            Block("What changed in stators", [_changes(repository, motors, period)]),
             Block(
-                "Alarms that called",
+                "Alarms raised",
                 [alarm_table(repository, period, sites=sites, most=MOST_CALLS, with_comments=False)],
             ),
         ],

@@ -92,7 +92,7 @@ def motor_document(source: ReportSource, name: str, until_ns: int) -> ReportDocu
             Block("Condition", _verdict(motor, data, until_ns, zone)),
             Block("Figures", [_figures(motor, zone)]),
             *_pictures(repository, motor, seen, data, until_ns, zone),
-            Block("How it came to be so", [_changes(repository, name, until_ns)]),
+            Block("Condition history of the stator", [_changes(repository, name, until_ns)]),
             Block("Starts", [_starts(repository, name, until_ns)]),
             Block("Alarms", [_alarms(repository, name, until_ns)]),
             Block("Logbook", [_notes(repository, name, until_ns)]),
@@ -126,7 +126,7 @@ def _figures(motor: ReportedMotor, zone: str) -> Facts:
     facts = [
         ("fault level in all, with its 95 % interval", interval(said.mu_f, said.mu_f_ci95)),
         ("change since the reference", interval(said.change, said.change_ci95)),
-        ("least change that would be seen", share(motor.detectable)),
+        ("detection limit of a change", share(motor.detectable)),
         (
             "standing asymmetry judged from all records, as a fault level",
             share(number(reference.get("standing"))),
@@ -205,8 +205,8 @@ def _notes(repository: Repository, name: str, until_ns: int) -> Table:
         (
             one.time_ns,
             phrase(one.kind),
-            one.reason if one.withdrawn_ns is None else f"withdrawn: {one.reason}",
-            one.by,
+            one.reason if one.withdrawn_ns is None else f"withdrawn by {one.who_withdrew}: {one.reason}",
+            one.who,
         )
         for one in _until(page, until_ns)
     ]

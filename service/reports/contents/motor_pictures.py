@@ -102,7 +102,6 @@ def _asymmetry(motor: ReportedMotor, seen: Sequence[SeenRecord], data: Motor | N
         seen,
         data,
         since_ns=motor.since_ns,
-        path_ratio=motor.standing_path_ratio,
         detectable=motor.detectable,
         state=motor.said.state.value,
     )

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 from core.machines.parameters import Motor
+from core.machines.stator_winding import winding_words
 from service.condition.parameter_sources import SOURCES
 
 
@@ -15,6 +16,7 @@ def nameplate_facts(motor: Motor) -> Sequence[tuple[str, str]]:
         ("rated frequency", f"{plate.rated_frequency_Hz:g} Hz"),
         ("pole pairs", f"{plate.pole_pairs}"),
         ("connection", plate.connection.value),
+        *([] if motor.winding is None else [("stator winding", winding_words(motor.winding))]),
         ("stator resistance", f"{machine.stator_resistance_ohm:.4g} ohm"),
         ("rotor resistance", f"{machine.rotor_resistance_ohm:.4g} ohm"),
         ("stator leakage", f"{1e3 * machine.stator_leakage_H:.4g} mH"),

@@ -7,6 +7,7 @@ from service.storage.models.access import (
     ApiTokenRow,
     FailedLoginRow,
     LoginLinkRow,
+    RecoveryCodeRow,
     UserRow,
     UserSessionRow,
 )
@@ -93,6 +94,7 @@ __all__ = [
     "RecordingFileRow",
     "RecordingRequestRow",
     "RecordingRow",
+    "RecoveryCodeRow",
     "RelayEventRow",
     "RelayFindingsRow",
     "RelayStatisticsRow",

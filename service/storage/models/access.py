@@ -1,12 +1,17 @@
-"""Tables of users, their sessions, login links and tokens, and of failed logins.
+"""Tables of users, their second factors, sessions, login links and tokens, and of failed logins.
 
-Of passwords and secrets they have hashes only.
+Of passwords and secrets they have hashes only; the secrets of authenticator apps are sealed.
 """
 
-from sqlalchemy import ForeignKey, Index, String
+from typing import Final
+
+from sqlalchemy import CheckConstraint, ForeignKey, Index, String
 from sqlalchemy.orm import Mapped, mapped_column
 
 from service.storage.models.base import Base
+
+BOTH_ROLES: Final = "roles LIKE '%SECADM%' AND roles LIKE '%SECAUD%'"
+"""No row has both: who manages users does not read what is kept of that."""
 
 
 class UserRow(Base):
@@ -14,7 +19,11 @@ class UserRow(Base):
 
     name: in lower case. roles: their names, with spaces between. password: an Argon2 hash; None where nobody
     can log in with one. subject: who an identity provider says it is, with the provider before it.
-    sessions_ended_ns: when somebody ended all of their sessions, also those that are no rows here.
+    password_set_by: who else gave them their password, until they change it. sessions_ended_ns: when somebody
+    ended all of their sessions, also those that are no rows here. confirmed_ns: when the identity provider
+    last let them in. totp: the secret of their authenticator app, sealed; totp_pending: of one that is not
+    confirmed. totp_step: the last step of time whose code was used. second_factor_ns: since when they have
+    one.
     """
 
     __tablename__ = "users"
@@ -27,13 +36,24 @@ class UserRow(Base):
     disabled: Mapped[bool]
     created_ns: Mapped[int]
     password_set_ns: Mapped[int | None]
+    password_set_by: Mapped[str | None]
     sessions_ended_ns: Mapped[int | None]
+    confirmed_ns: Mapped[int | None]
     last_login_ns: Mapped[int | None]
     last_login_origin: Mapped[str | None]
+    totp: Mapped[str | None]
+    totp_pending: Mapped[str | None]
+    totp_step: Mapped[int | None]
+    second_factor_ns: Mapped[int | None]
+
+    __table_args__ = (CheckConstraint(f"NOT ({BOTH_ROLES})", name="separate_roles"),)
 
 
 class UserSessionRow(Base):
-    """A login, until it is ended. digest: SHA-256 of the secret that the client has."""
+    """A login, until it is ended. digest: SHA-256 of the secret that the client has.
+
+    second_factor: whether more was shown than a password.
+    """
 
     __tablename__ = "user_sessions"
 
@@ -42,6 +62,16 @@ class UserSessionRow(Base):
     origin: Mapped[str]
     created_ns: Mapped[int]
     used_ns: Mapped[int] = mapped_column(index=True)
+    second_factor: Mapped[bool]
+
+
+class RecoveryCodeRow(Base):
+    """A code that stands once for a user's second factor. digest: SHA-256 of it."""
+
+    __tablename__ = "recovery_codes"
+
+    digest: Mapped[str] = mapped_column(String(64), primary_key=True)
+    user: Mapped[str] = mapped_column(ForeignKey("users.name"), index=True)
 
 
 class LoginLinkRow(Base):
@@ -55,7 +85,10 @@ class LoginLinkRow(Base):
 
 
 class ApiTokenRow(Base):
-    """A secret of a user for a program. scope: permissions, with spaces between; None for all of the user."""
+    """A secret of a user for a program. scope: permissions, with spaces between; None for all of the user.
+
+    parent: the token that asked for this one, and with which it ends; None where a person did.
+    """
 
     __tablename__ = "api_tokens"
 
@@ -64,6 +97,7 @@ class ApiTokenRow(Base):
     label: Mapped[str]
     digest: Mapped[str] = mapped_column(String(64), unique=True)
     scope: Mapped[str | None]
+    parent: Mapped[str | None] = mapped_column(ForeignKey("api_tokens.id", ondelete="CASCADE"), index=True)
     created_ns: Mapped[int]
     expires_ns: Mapped[int | None]
     used_ns: Mapped[int | None]

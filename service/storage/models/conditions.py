@@ -94,8 +94,9 @@ class ConditionRow(Figures, Base):
     """A motor's condition: one row for each motor.
 
     version: counts the folds; who folded from an older version writes nothing.  document: what
-    `Condition.as_dict()` gave; null before the first fold, as is as_of_ns.  standing: its standing asymmetry,
-    for the other motors of its bus.  problem: why what came since is not folded; null while it is.
+    `MotorCondition.as_dict()` gave, of which state, kind, phase and since_ns are; null before the first fold,
+    as is as_of_ns.  stator: what `Condition.as_dict()` gave of the stator alone.  standing: its standing
+    asymmetry, for the other motors of its bus.  problem: why what came since is not folded; null while it is.
     rules: version of the rules by which all of it was judged; null before the first fold.
     parameters: what `TrackedParameters.as_dict()` gave; null where no fold followed them yet.
     stood_ns: when the motor was last seen to stand still; null where it never was.
@@ -110,6 +111,7 @@ class ConditionRow(Figures, Base):
     since_ns: Mapped[int | None]
     as_of_ns: Mapped[int | None]
     document: Mapped[Mapping[str, object] | None]
+    stator: Mapped[Mapping[str, object] | None]
     standing: Mapped[Mapping[str, object] | None]
     problem: Mapped[str | None]
     rules: Mapped[str | None]
@@ -158,6 +160,7 @@ class ConditionChangeRow(Figures, Base):
 class ConditionEventRow(Base):
     """What somebody told of a motor, or what its files tell (core.condition.events).
 
+    account: that told it; null where it was not kept. by: whom somebody named, else the account.
     withdrawn_...: it was wrong, and counts no more; null while it counts.
     """
 
@@ -168,9 +171,11 @@ class ConditionEventRow(Base):
     time_ns: Mapped[int]
     kind: Mapped[EventKind]
     reason: Mapped[str]
+    account: Mapped[str | None]
     by: Mapped[str]
     made_ns: Mapped[int]
     withdrawn_ns: Mapped[int | None]
+    withdrawn_account: Mapped[str | None]
     withdrawn_by: Mapped[str | None]
     withdrawn_reason: Mapped[str | None]
 

@@ -1,8 +1,8 @@
 """What the repository hands out: plain values, free of the database session they were read in."""
 
 from service.roles import Role
-from service.storage.records.access import ApiToken, LoginLimits, User, UserSession
-from service.storage.records.actors import SERVICE, Actor
+from service.storage.records.access import ApiToken, LoginLimits, TotpSecrets, User, UserSession
+from service.storage.records.actors import COMMAND_LINE, SERVICE, Actor
 from service.storage.records.alarms import (
     Alarm,
     AlarmCall,
@@ -49,7 +49,7 @@ from service.storage.records.diagnoses import (
     TrendPoint,
     interval_of,
 )
-from service.storage.records.fleet import CallingAlarms, FleetMotor, StandingRotor
+from service.storage.records.fleet import CallingAlarms, FleetMotor
 from service.storage.records.health import MotorHealth, RecordedStarts
 from service.storage.records.measurements import ImportedLoad, Measurement, Sample
 from service.storage.records.notifications import (
@@ -101,6 +101,7 @@ from service.storage.records.starts import (
 )
 
 __all__ = [
+    "COMMAND_LINE",
     "SERVICE",
     "Actor",
     "Alarm",
@@ -189,13 +190,13 @@ __all__ = [
     "SeriesEnd",
     "SeriesHistory",
     "SiteEntry",
-    "StandingRotor",
     "StartEntry",
     "StartReference",
     "SupplyEntry",
     "SupplyQuantity",
     "SwingEntry",
     "ToObserve",
+    "TotpSecrets",
     "TrackedPoint",
     "TrendPoint",
     "UnbalanceEntry",

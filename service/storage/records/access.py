@@ -10,7 +10,9 @@ class User:
     """Somebody who may log in.
 
     has_password: False where nobody can log in with one. subject: who an identity provider says it is.
-    sessions_ended_ns: when somebody ended all of their sessions.
+    password_set_by: who else gave them their password, until they change it. sessions_ended_ns: when somebody
+    ended all of their sessions. confirmed_ns: when the identity provider last let them in.
+    second_factor_ns: since when they have one.
     """
 
     name: str
@@ -21,29 +23,58 @@ class User:
     subject: str | None
     created_ns: int
     password_set_ns: int | None
+    password_set_by: str | None
     sessions_ended_ns: int | None
+    confirmed_ns: int | None
     last_login_ns: int | None
     last_login_origin: str | None
+    second_factor_ns: int | None
+
+    @property
+    def must_change_password(self) -> bool:
+        """Return whether somebody else knows the password: nothing is done with it but changing it."""
+        return self.password_set_by is not None
+
+    @property
+    def has_second_factor(self) -> bool:
+        """Return whether their password lets nobody in alone."""
+        return self.second_factor_ns is not None
+
+
+@dataclass(frozen=True, slots=True)
+class TotpSecrets:
+    """The secret of a user's authenticator app, sealed; pending: of one that is being set up."""
+
+    confirmed: str | None
+    pending: str | None
 
 
 @dataclass(frozen=True, slots=True)
 class UserSession:
-    """A login of a user; it was last used at used_ns."""
+    """A login of a user; it was last used at used_ns.
+
+    second_factor: whether more was shown than a password.
+    """
 
     user: User
     origin: str
     created_ns: int
     used_ns: int
+    second_factor: bool
 
 
 @dataclass(frozen=True, slots=True)
 class ApiToken:
-    """A secret of a user for a program, without the secret. scope: None for all that the user may."""
+    """A secret of a user for a program, without the secret. scope: None for all that the user may.
+
+    parent: the token that asked for this one, and with which it ends; None where a person did.
+    """
 
     id: str
     user: str
     label: str
     scope: frozenset[str] | None
+    parent: str | None
     created_ns: int
     expires_ns: int | None
     used_ns: int | None

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from service.audit.actions import AuditAction
 from service.storage.records.alarms import AlarmPlace, AlarmSpec
 from service.storage.states import AlarmKind, ClockQuality, LinkState
 
@@ -45,6 +46,20 @@ class RecordOutlook:
     link: LinkState
     link_changed_ns: int | None
     recording_id: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class NotedRefusal:
+    """What an entry of the audit trail tells of requests or logins that were refused.
+
+    requests: how many it stands for.
+    """
+
+    action: AuditAction
+    actor: str
+    origin: str
+    subject: str
+    requests: int
 
 
 @dataclass(frozen=True, slots=True)

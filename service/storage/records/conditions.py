@@ -2,11 +2,15 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import cast
 
-from core.condition.assessment import Phase
+from core.condition.assessment import Phase, Phases
 from core.condition.events import Event, EventKind
 from core.condition.kinds import Kind, State
 from core.condition.observation import Observation
+from core.condition.verdict.document import phases_of_document
+from core.motor_condition.parts import Part, PartCondition, parts_of
+from service.audit.acting import in_words
 from service.storage.records.diagnoses import interval_of
 
 
@@ -40,13 +44,23 @@ class ConditionFigures:
         """Return the 95 % interval of the change."""
         return interval_of(self.change_ci95_low, self.change_ci95_high)
 
+    @property
+    def phase_probabilities(self) -> Phases | None:
+        """Return the probability of each phase, if it is shorted turns; only the condition now has them."""
+        return None
+
+    @property
+    def parts(self) -> tuple[PartCondition, ...]:
+        """Return what was said of each part; only the condition now has them."""
+        return ()
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ConditionEntry(ConditionFigures):
     """A motor's condition now.
 
-    version: how often it was folded; 0 where it never was.  document: `Condition.as_dict()`, with what was
-    stale when it was made; None before the first fold.  as_of_ns: time of the latest record in it.
+    version: how often it was folded; 0 where it never was.  document: `MotorCondition.as_dict()`, with what
+    was stale when it was made; None before the first fold.  as_of_ns: time of the latest record in it.
     problem: why what came since is not folded; None while it is.  stood_ns: when the motor was last seen to
     stand still; None where it never was.
     """
@@ -58,6 +72,21 @@ class ConditionEntry(ConditionFigures):
     document: Mapping[str, object] | None
     problem: str | None = None
     stood_ns: int | None = None
+
+    @property
+    def phase_probabilities(self) -> Phases | None:
+        """Return the probability of each phase, should it be shorted turns; None where none is known."""
+        found = (self.document or {}).get("phase_probabilities")
+        return phases_of_document(cast("list[float] | None", found))
+
+    @property
+    def parts(self) -> tuple[PartCondition, ...]:
+        """Return what is said of each part of the motor; nothing before the first fold."""
+        return parts_of(self.document)
+
+    def state_of(self, part: Part) -> State:
+        """Return the state of a part; unknown where it was not judged."""
+        return next((one.state for one in self.parts if one.part is part), State.UNKNOWN)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -104,9 +133,10 @@ class ConditionChange(ConditionFigures):
 
 @dataclass(frozen=True, slots=True)
 class ConditionEvent:
-    """An event of a motor, by whom and when it was told. `by` is a person, or what noticed it.
+    """An event of a motor, by whom and when it was told.
 
-    withdrawn_...: None while it counts.
+    account: that told it; None where it was not kept. by: whom somebody named, or what noticed it, else the
+    account. withdrawn_...: None while it counts.
     """
 
     id: str
@@ -114,9 +144,11 @@ class ConditionEvent:
     time_ns: int
     kind: EventKind
     reason: str
+    account: str | None
     by: str
     made_ns: int
     withdrawn_ns: int | None = None
+    withdrawn_account: str | None = None
     withdrawn_by: str | None = None
     withdrawn_reason: str | None = None
 
@@ -124,6 +156,26 @@ class ConditionEvent:
     def event(self) -> Event:
         """Return the event as the core knows it."""
         return Event(self.time_ns, self.kind, self.reason)
+
+    @property
+    def on_behalf_of(self) -> str | None:
+        """Return whom somebody named as who tells it; None for nobody but the account."""
+        return None if self.by == self.account else self.by
+
+    @property
+    def withdrawn_on_behalf_of(self) -> str | None:
+        """Return whom somebody named as who withdraws it; None for nobody but the account."""
+        return None if self.withdrawn_by == self.withdrawn_account else self.withdrawn_by
+
+    @property
+    def who(self) -> str:
+        """Return who told it, in words."""
+        return in_words(self.account, self.on_behalf_of)
+
+    @property
+    def who_withdrew(self) -> str:
+        """Return who withdrew it, in words."""
+        return in_words(self.withdrawn_account, self.withdrawn_on_behalf_of)
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 
-from core.rotor.finding import RotorState
 from service.storage.records.conditions import ConditionEntry
 from service.storage.records.diagnoses import LatestFigures
 from service.storage.records.plant import MotorEntry
@@ -21,19 +20,11 @@ class CallingAlarms:
 
 
 @dataclass(frozen=True, slots=True)
-class StandingRotor:
-    """A rotor that somebody has to look after. since_ns: the first record that says so, or None."""
-
-    state: RotorState
-    since_ns: int | None
-
-
-@dataclass(frozen=True, slots=True)
 class FleetMotor:
     """What an overview tells of a motor.
 
     link, link_changed_ns: of its relay. figures: of its latest recording that has any, or None.
-    alarms: None where none calls. rotor: what its standing alarm says; None where none stands.
+    alarms: None where none calls.
     """
 
     motor: MotorEntry
@@ -42,4 +33,3 @@ class FleetMotor:
     link_changed_ns: int | None
     figures: LatestFigures | None
     alarms: CallingAlarms | None
-    rotor: StandingRotor | None = None

@@ -2,6 +2,7 @@
 
 from service.storage.repository.access.failed_logins import FailedLoginRows
 from service.storage.repository.access.login_links import LoginLinkRows
+from service.storage.repository.access.second_factors import SecondFactorRows
 from service.storage.repository.access.tokens import TokenRows
 from service.storage.repository.access.user_sessions import UserSessionRows
 from service.storage.repository.access.users import UserRows
@@ -11,9 +12,9 @@ from service.storage.repository.backups import BackupRows
 from service.storage.repository.conditions.conditions import ConditionRows
 from service.storage.repository.conditions.events import ConditionEventRows
 from service.storage.repository.conditions.folding import FoldingRows
+from service.storage.repository.conditions.motor_conditions import MotorConditionRows
 from service.storage.repository.conditions.observations import ObservationRows
 from service.storage.repository.conditions.tracking import TrackingRows
-from service.storage.repository.history.answers import AnswerRows
 from service.storage.repository.history.condition_days import ConditionDayRows
 from service.storage.repository.history.conditions import PastConditionRows
 from service.storage.repository.history.journal import JournalRows
@@ -80,7 +81,6 @@ class Repository(
     RotorRows,
     SupplyRows,
     SwingRows,
-    AnswerRows,
     ThinnedTrendRows,
     NeighbourRows,
     PastConditionRows,
@@ -90,6 +90,7 @@ class Repository(
     ConditionEventRows,
     ConditionRows,
     FoldingRows,
+    MotorConditionRows,
     TrackingRows,
     StateCounts,
     MeasurementRows,
@@ -105,6 +106,7 @@ class Repository(
     NotificationRows,
     UserRows,
     UserSessionRows,
+    SecondFactorRows,
     LoginLinkRows,
     TokenRows,
     FailedLoginRows,

@@ -37,9 +37,9 @@ class MotorVersionRows(Sessions):
 
         documents: of each motor, a table of figures by the name of the table in the file.
 
-        Other figures of the machine count from now on, and are an event. Another class of the sensors has
-        always been so: all is folded again. So have parameters that take the place of typical ones. Another
-        limit counts from the latest record on.
+        Other figures of the machine count from now on, and are an event. Another class of the sensors, and
+        another stator winding, have always been so: all is folded again. So have parameters that take the
+        place of typical ones. Another limit counts from the latest record on.
         Raises NotFoundError.
         """
         with self._write() as session:
@@ -63,8 +63,9 @@ def _note(session: Session, motor: str, document: Mapping[str, Any], now_ns: int
     note_change(session, SERVICE, action, ("motor", motor), now_ns=now_ns, before=was, after=now)
     for version in versions:
         others = {table: figures for table, figures in document.items() if table not in MACHINE}
-        version.document = {**version.document, **others}
-    if before.get("sensors") != document["sensors"]:
+        of_machine = {table: figures for table, figures in version.document.items() if table in MACHINE}
+        version.document = {**of_machine, **others}
+    if any(before.get(table) != document.get(table) for table in ("sensors", "winding")):
         mark(session, motor, EARLIEST_NS)
     latest_ns = session.scalar(select(func.max(ObservationRow.time_ns)).where(ObservationRow.motor == motor))
     if latest_ns is not None and before.get("limits") != document["limits"]:
@@ -91,6 +92,7 @@ def _note(session: Session, motor: str, document: Mapping[str, Any], now_ns: int
             time_ns=now_ns,
             kind=EventKind.PARAMETERS_EDITED,
             reason=", ".join(edits),
+            account=SERVICE.name,
             by=MOTORS_FILE,
             made_ns=now_ns,
         )

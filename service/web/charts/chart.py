@@ -7,7 +7,7 @@ from math import isfinite
 from typing import Final
 
 from core.quantity_text import plain
-from core.time_stamps import SECONDS_END, rfc3339
+from core.time_words import clock
 from core.units import NANOSECONDS_PER_SECOND
 
 MOST_ROWS: Final = 40
@@ -167,7 +167,7 @@ class Chart:
         if len(rows) < len(self.x):
             chosen = "every so many, and the smallest and largest of each column"
             shown = f"{len(rows)} of {len(self.x)} values: {chosen}."
-        x_heading = "time (UTC)" if self.x_kind is AxisKind.TIME else _heading(self.x_label, self.x_unit)
+        x_heading = "time" if self.x_kind is AxisKind.TIME else _heading(self.x_label, self.x_unit)
         headings = [x_heading]
         for one in self.series:
             headings.append(_heading(one.label, one.unit))
@@ -188,7 +188,7 @@ class Chart:
 
     def _place(self, x: float) -> str:
         if self.x_kind is AxisKind.TIME:
-            return f"{_instant(x)} UTC"
+            return _instant(x)
         return f"{plain(x, 7, with_commas=False)} {self.x_unit}".rstrip()
 
     def _row(self, number: int) -> tuple[str, ...]:
@@ -232,4 +232,4 @@ def _cell(value: float | None) -> str:
 
 
 def _instant(seconds: float) -> str:
-    return rfc3339(round(seconds * NANOSECONDS_PER_SECOND))[:SECONDS_END].replace("T", " ")
+    return clock(round(seconds * NANOSECONDS_PER_SECOND), seconds=True)

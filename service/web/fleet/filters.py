@@ -42,11 +42,10 @@ class FleetFilter:
 
     def _shows(self, row: FleetRow) -> bool:
         return (self.site is None or row.site == self.site) and (
-            self.state is None or self.state in row.all_states
+            self.state is None or self.state is row.state
         )
 
 
 def _searched(row: FleetRow) -> str:
     states = (STATE_WORDS[state] for state in row.states)
-    rotor = "" if row.rotor is None else f"rotor {row.rotor}"
-    return "\n".join((row.name, row.description, row.site, row.ied, row.kind, rotor, *states)).casefold()
+    return "\n".join((row.name, row.description, row.site, row.ied, row.kind, *states)).casefold()

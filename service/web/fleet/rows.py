@@ -9,8 +9,6 @@ from hashlib import blake2b
 from core.condition.kinds import State
 from core.diagnosis.verdict import Verdict
 from core.machines.parameters import ParametersSource
-from core.rotor.finding import RotorState
-from service.alarms.rotor_rules import rotor_advice
 from service.api.conditions.documents import condition_document
 from service.api.conditions.schemas import Condition
 from service.condition.staleness import Missing, missing, stale_after_ns
@@ -40,8 +38,7 @@ class FleetRow:
     before.  growth_per_day, days: None where there is no trend; days: to the level `limit`, counted from the
     latest record.  reference: levels between which no change would be seen.  advice: empty where nothing is
     to be done.  doubt: why a healthy motor may not be; empty where nothing speaks against it.
-    version: of its condition.  rotor: watch or fault; None where nothing is wrong, or known.
-    rotor_since_ns: the first record that shows the rotor so.
+    version: of its condition.
     """
 
     name: str
@@ -69,18 +66,10 @@ class FleetRow:
     alarms: CallingAlarms | None
     reference: Interval | None
     version: int
-    rotor: RotorState | None
-    rotor_since_ns: int | None
-
-    @property
-    def all_states(self) -> tuple[FleetState, ...]:
-        """Return the states of winding and rotor, the one that matters most first."""
-        found = {*self.states, *(() if self.rotor is None else (FleetState(self.rotor.value),))}
-        return tuple(sorted(found, key=RANKS.__getitem__))
 
     @property
     def state(self) -> FleetState:
-        """Return the state of the winding that matters most."""
+        """Return the state that matters most."""
         return self.states[0]
 
     @property
@@ -107,7 +96,7 @@ class FleetRow:
     @property
     def needs_attention(self) -> bool:
         """Tell whether somebody has to look after the motor."""
-        return self.alarms is not None or self.all_states[0] in (FleetState.FAULT, FleetState.WATCH)
+        return self.alarms is not None or self.state in (FleetState.FAULT, FleetState.WATCH)
 
     @property
     def attention(self) -> tuple[int, int, bool, float, int, str]:
@@ -117,7 +106,7 @@ class FleetRow:
         """
         urgency = -1 if self.alarms is None else self.alarms.urgency
         growth = self.growth_per_day or 0.0
-        return (-urgency, RANKS[self.all_states[0]], not self.doubt, -growth, self.as_of_ns or 0, self.name)
+        return (-urgency, RANKS[self.state], not self.doubt, -growth, self.as_of_ns or 0, self.name)
 
 
 def digest(*told: object) -> str:
@@ -128,7 +117,6 @@ def digest(*told: object) -> str:
 def row_of(motor: FleetMotor, now_ns: int, stale_after_days: float | None) -> FleetRow:
     """Return what the fleet shows of a motor now. stale_after_days: what the settings say of all motors."""
     entry, figures = motor.condition, motor.figures
-    rotor = None if motor.rotor is None else motor.rotor.state
     oldest_ns = stale_after_ns(motor.motor.schedule, stale_after_days)
     condition = condition_document(entry, now_ns, oldest_ns, source=motor.motor.parameters_source)
     states = states_of(entry, now_ns, oldest_ns)
@@ -156,13 +144,11 @@ def row_of(motor: FleetMotor, now_ns: int, stale_after_days: float | None) -> Fl
         limit=condition.forecast.limit,
         as_of_ns=entry.as_of_ns,
         stood_ns=entry.stood_ns,
-        advice=_advice(condition, states[0], why, motor.motor.parameters_source) or _of_rotor(rotor),
+        advice=_advice(condition, states[0], why, motor.motor.parameters_source),
         doubt=doubt(condition, None if figures is None else figures.verdict),
         alarms=motor.alarms,
         reference=_reference(condition),
         version=entry.version,
-        rotor=rotor,
-        rotor_since_ns=None if motor.rotor is None else motor.rotor.since_ns,
     )
 
 
@@ -173,10 +159,6 @@ def _advice(condition: Condition, state: FleetState, why: Missing | None, source
     sentences = advice_now(condition.advice, condition.state, why).split(". ")
     told = ". ".join(sentences[:SENTENCES_OF_ADVICE])
     return told if told.endswith(".") else f"{told}."
-
-
-def _of_rotor(rotor: RotorState | None) -> str:
-    return "" if rotor is None else rotor_advice(rotor)
 
 
 def doubt(condition: Condition, latest: Verdict | None) -> str:
@@ -209,6 +191,6 @@ def _reference(condition: Condition) -> Interval | None:
 
 
 def counts(rows: Iterable[FleetRow]) -> Mapping[FleetState, int]:
-    """Return how many motors are in each state; one that is in two counts in both."""
-    number = Counter(state for row in rows for state in row.all_states)
+    """Return how many motors are in each state; each counts once, in the one that matters most."""
+    number = Counter(row.state for row in rows)
     return {state: number[state] for state in FleetState}

@@ -31,14 +31,14 @@ AFTER_FAILURE_S = 5.0
 class LiveBus:
     """Watches the database in the running event loop while there are viewers.
 
-    It knows the topics that are watched and their stamps, and nothing of who watches.
+    It knows the topics that are watched and their stamps, and how often whom they are watched by.
     """
 
     def __init__(self, changes: Changes, *, period_s: float = PERIOD_S) -> None:
         self._changes = changes
         self._period_s = period_s
         self._watched: Counter[Topic] = Counter()
-        self._streams = 0
+        self._streams: Counter[str] = Counter()
         self._stamps: Mapping[Topic, str] = {}
         self._news = asyncio.Event()
         self._watcher: asyncio.Task[None] | None = None
@@ -47,7 +47,11 @@ class LiveBus:
     @property
     def streams(self) -> int:
         """Return how many follow now."""
-        return self._streams
+        return self._streams.total()
+
+    def streams_of(self, viewer: str) -> int:
+        """Return how many follow now for one viewer."""
+        return self._streams[viewer]
 
     def close(self) -> None:
         """End all streams, because the service stops. To be called in the event loop."""
@@ -58,14 +62,15 @@ class LiveBus:
         asyncio.get_running_loop().run_in_executor(None, self._changes.close)
 
     async def follow(
-        self, topics: Collection[Topic], *, pause_s: float
+        self, topics: Collection[Topic], *, viewer: str, pause_s: float
     ) -> AsyncIterator[Mapping[Topic, str]]:
         """Yield the topics' stamps: once they are known, after each change, and every `pause_s` at least.
 
-        Nothing is in them while the database does not answer. It ends when the service stops.
+        viewer: the name of who watches.  Nothing is in them while the database does not answer.  It ends when
+        the service stops.
         """
         loop = asyncio.get_running_loop()
-        with self._watching(topics):
+        with self._watching(topics, viewer):
             told: Mapping[Topic, str] = {}
             due_s = loop.time() + pause_s
             while not self._is_closed:
@@ -80,15 +85,16 @@ class LiveBus:
                         await asyncio.wait_for(news.wait(), due_s - loop.time())
 
     @contextmanager
-    def _watching(self, topics: Collection[Topic]) -> Iterator[None]:
+    def _watching(self, topics: Collection[Topic], viewer: str) -> Iterator[None]:
         self._watched.update(topics)
-        self._streams += 1
+        self._streams[viewer] += 1
         if self._watcher is None and not self._is_closed:
             self._watcher = asyncio.get_running_loop().create_task(self._watch(), name="live pages")
         try:
             yield
         finally:
-            self._streams -= 1
+            self._streams[viewer] -= 1
+            self._streams = +self._streams
             self._watched.subtract(topics)
             self._watched = +self._watched
 
@@ -118,7 +124,7 @@ class LiveBus:
     def _pause_s(self, stamps: Mapping[Topic, str]) -> float:
         """Return the pause after these stamps. That somebody else watches is no change."""
         has_changed = any(self._stamps.get(topic, stamp) != stamp for topic, stamp in stamps.items())
-        return AFTER_CHANGE_S + self._streams * FOR_EACH_STREAM_S if has_changed else self._period_s
+        return AFTER_CHANGE_S + self.streams * FOR_EACH_STREAM_S if has_changed else self._period_s
 
     def _tell(self, stamps: Mapping[Topic, str]) -> None:
         self._stamps = stamps

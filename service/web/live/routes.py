@@ -27,6 +27,9 @@ from service.web.live.topics import Topic, topic_of
 MOST_TOPICS = 5
 LONGEST_SEEN = 500
 
+SHARE, LEAST_OF_ONE = 4, 2
+"""One user has at most this part of the streams, and may have so many in any case."""
+
 RETRY_MS = 2000
 """A browser whose stream ended comes again after so long."""
 
@@ -90,6 +93,10 @@ async def get_live(
     most = max(context.settings.max_connections // 2, 1)
     if live.bus.streams >= most:
         raise BusyError("streams of open pages", most)
+    viewer = asking.actor.name
+    most_of_one = max(most // SHARE, LEAST_OF_ONE)
+    if live.bus.streams_of(viewer) >= most_of_one:
+        raise BusyError(f"streams of open pages of {viewer}", most_of_one)
     before = request.headers.get("last-event-id") or seen
     return StreamingResponse(
         _events(live.bus, context, asking, topics, before),
@@ -106,7 +113,7 @@ async def _events(
     told = None if before is None else before.split(",")
     people: str | None = None
     looked_s = time.monotonic()
-    async for stamps in bus.follow([*topics, PEOPLE], pause_s=PAUSE_S):
+    async for stamps in bus.follow([*topics, PEOPLE], viewer=asking.actor.name, pause_s=PAUSE_S):
         if len(stamps) <= len(topics):  # the database does not answer
             yield ": wait\n\n"
             continue

@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 
-from service.api.classification.answer import motor_answer
 from service.client.classification import AnswerShown, answer_shown
 from service.storage import Repository
 
@@ -17,5 +16,5 @@ class AnswerSection:
 
 def answer_section(repository: Repository, motor: str) -> AnswerSection:
     """Read what the page says of a motor's causes. Raises NotFoundError."""
-    answer = motor_answer(repository, motor)
+    answer = repository.motor_answer(motor)
     return AnswerSection(answer_shown(answer.classification.as_dict()), answer.records)

@@ -67,7 +67,6 @@ def motor_drawings(
         [*earlier, *seen],
         motor,
         since_ns=since_ns,
-        path_ratio=condition.reference.standing_path_ratio or 0.0,
         detectable=condition.reference.detectable,
         state=condition.state.value,
     )

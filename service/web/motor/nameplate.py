@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from core.machines.parameters import Connection, Motor, WoundRotor
+from core.machines.stator_winding import StatorWinding, winding_words
 from core.quantity_text import with_unit
 from service.condition.motor_data import motor_known
 from service.condition.parameter_sources import SOURCES
@@ -65,8 +66,15 @@ def _rated(motor: Motor) -> list[Fact]:
         Fact("Rated frequency", with_unit(plate.rated_frequency_Hz, "Hz", DIGITS), file),
         Fact("Poles", f"{2 * plate.pole_pairs}, {speed:.0f} rpm without slip", file),
         Fact("Connection", "delta" if plate.connection is Connection.DELTA else "star", file),
+        _of_winding(motor.winding),
         *_of_rotor(motor.wound_rotor),
     ]
+
+
+def _of_winding(winding: StatorWinding | None) -> Fact:
+    if winding is None:
+        return Fact("Stator winding", "not given")
+    return Fact("Stator winding", winding_words(winding), "motors file")
 
 
 def _of_rotor(rotor: WoundRotor | None) -> list[Fact]:

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
+from core.tracking.advice import NOTHING_TO_DO, drift_advice, drift_reason
 from core.tracking.finding import ParameterName, TrackedParameter, TrackedParameters, TrackingState
 from core.units import NANOSECONDS_PER_SECOND
-from service.alarms.drift_rules import NOTHING_TO_DO, drift_advice, drift_reason
 from service.condition.tracking import COLUMNS
 from service.storage import Repository
 from service.storage.records import TrackedPoint

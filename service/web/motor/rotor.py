@@ -5,11 +5,11 @@ from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 from core.machines.parameters import MachineKind
+from core.rotor.advice import rotor_advice
 from core.rotor.finding import RotorState
 from core.rotor.judgement import FAULT_DB, WATCH_DB
 from core.rotor.trend import RotorCondition
 from core.units import NANOSECONDS_PER_SECOND
-from service.alarms.rotor_rules import rotor_advice
 from service.api.rotor_and_supply.start_agreement import StartAgreement, start_agreement
 from service.client.rotor_and_supply import STATES, decibels, sideband_words
 from service.storage import Repository
@@ -121,7 +121,7 @@ def _severity_chart(motor: str, entries: Sequence[RotorEntry]) -> Chart:
             [None if ends is None else _drawn(ends[1]) for ends in intervals],
         ),
         Series(
-            "would be seen",
+            "detection limit",
             [_drawn(one.finding.detection_limit_dB) for one in entries],
             "dB",
             Tone.MUTED,
@@ -148,9 +148,9 @@ def _severity_chart(motor: str, entries: Sequence[RotorEntry]) -> Chart:
             series.append(Series(state.value, values, "dB", tone, Kind.POINTS))
     return Chart(
         key="rotor-severity",
-        caption=f"Asymmetry of the rotor of {motor}",
+        caption=f"Rotor bar severity of {motor}",
         x_label="time",
-        y_label="asymmetry of the rotor",
+        y_label="rotor bar severity",
         y_unit="dB",
         x_kind=AxisKind.TIME,
         x=_times(entries),

@@ -23,6 +23,7 @@ from service.web.forms import document_of_form
 from service.web.live.routes import live_address
 from service.web.motor.page import motor_page, span_of
 from service.web.motor.trend import SPANS, USUAL, trend_chart
+from service.web.motor.undo import UNDO_MINUTES, latest_to_undo, may_undo
 from service.web.view import Looking, View
 from service.web.words import phrase
 
@@ -55,6 +56,8 @@ def show_motor(view: Looking, name: Name, days: Annotated[str, Query(max_length=
         live=live,
         here=address("/motors", name),
         kinds=_kinds(view),
+        long_record_s=view.context.settings.long_record_s,
+        undo=latest_to_undo(page.notes, view.asking.actor.name, view.now_ns),
     )
 
 
@@ -78,11 +81,17 @@ def get_trend_piece(view: Looking, name: Name, from_s: Seconds, to_s: Seconds) -
 
 
 @router.post("/motors/{name}/recording-requests", dependencies=[require(Permission.TRIGGER)])
-def record_motor(view: Looking, name: Name) -> Response:
-    """Have the motor's relay make a recording."""
+def record_motor(
+    view: Looking, name: Name, seconds: Annotated[float | None, Form(ge=1.0, le=30.0)] = None
+) -> Response:
+    """Have the motor's relay make a recording, or a series that makes up so many seconds."""
     context = view.context
     context.repository.request_recording(
-        name, by=view.asking.actor, now_ns=view.now_ns, most_open=context.settings.max_open_requests
+        name,
+        by=view.asking.actor,
+        now_ns=view.now_ns,
+        most_open=context.settings.max_open_requests,
+        seconds=seconds,
     )
     return _done(view, name, "recording-requested")
 
@@ -120,7 +129,7 @@ def write_note(
             raise ProblemError(
                 HTTPStatus.UNPROCESSABLE_ENTITY,
                 f"{phrase(wanted.kind)} has the motor judged anew: what stands of it, its alarms too, may go "
-                "until new records show it again. Tick 'Judge the motor anew', or write a note",
+                "until new records show it again. Tick 'Restart assessment', or write a note",
             )
     keep_note(view.context, name, wanted.kind, wanted.text, view.asking.actor, None, wanted.time)
     return _done(view, name, "note-kept")
@@ -135,6 +144,25 @@ def withdraw_note(view: Looking, name: Name, note_id: UUID, reason: Text = "") -
     )
     view.context.on_new_job()
     return _done(view, name, "note-withdrawn")
+
+
+@router.post("/motors/{name}/notes/{note_id}/undo", dependencies=[require(Permission.CONFIGURE)])
+def undo_note(view: Looking, name: Name, note_id: UUID) -> Response:
+    """Undo what the same person has just done: withdraw a note, or keep one again that was withdrawn."""
+    note, by = view.context.repository.event(name, str(note_id)), view.asking.actor
+    if not may_undo(note, by.name, view.now_ns):
+        raise ProblemError(
+            HTTPStatus.CONFLICT,
+            f"expected a note that you wrote or retracted in the last {UNDO_MINUTES} minutes: retract it "
+            "with a reason, or write it again",
+        )
+    if note.withdrawn_ns is None:
+        reason = f"undone within {UNDO_MINUTES} minutes"
+        view.context.repository.withdraw_event(name, note.id, by=by, reason=reason, now_ns=view.now_ns)
+        view.context.on_new_job()
+    else:
+        keep_note(view.context, name, note.kind, note.reason, by, note.on_behalf_of, note.time_ns)
+    return _done(view, name, "undone")
 
 
 def _utc(text: str) -> str:

@@ -43,10 +43,10 @@ def swing_section(repository: Repository, motor: str) -> SwingSection:
 
 def _chart(motor: str, entries: Sequence[SwingEntry]) -> Chart:
     lines = (
-        ("ripple of the air gap", [one.eccentricity.permeance_ripple for one in entries], Tone.ACCENT),
+        ("air-gap eccentricity", [one.eccentricity.permeance_ripple for one in entries], Tone.ACCENT),
         ("ripple that would be told", [one.eccentricity.detection_limit for one in entries], Tone.MUTED),
         ("torque once a turn", [one.eccentricity.load_torque for one in entries], Tone.INK),
-        ("strongest other swing of the torque", [one.pulsation.load_torque for one in entries], Tone.MODEL),
+        ("largest torque oscillation", [one.pulsation.load_torque for one in entries], Tone.MODEL),
     )
     return Chart(
         key="swings",

@@ -63,7 +63,7 @@ def trend_chart(
 ) -> Chart:
     """Return the chart. limit: level of a fault; ahead: level that the forecast is about.
 
-    detectable: least change that would be seen.  marks: in the order of time.  from_ns, to_ns: the time that
+    detectable: detection limit of a change.  marks: in the order of time.  from_ns, to_ns: the time that
     the axis shows, whether there are records or not.  Levels far above all others are told, and not drawn.
     """
     series = _series(trend)
@@ -75,7 +75,7 @@ def trend_chart(
     if ahead is not None and ahead != limit:
         others.append(Limit(PERCENT * ahead, f"next level {percent(ahead)}", Tone.WATCH))
     if detectable is not None:
-        others.append(Limit(PERCENT * detectable, f"seen from {percent(detectable)}", Tone.MUTED))
+        others.append(Limit(PERCENT * detectable, f"detection limit {percent(detectable)}", Tone.MUTED))
     for one in others:
         if one.y <= FAR * top:
             lines.append(one)

@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from service.api.conditions.schemas import Condition
+from service.api.conditions.schemas import Condition, PartOfMotor
 from service.condition.staleness import missing
-from service.condition.wording import advice_now, expected, finding, level_ahead
+from service.condition.wording import advice_now, beside_stator, expected, finding, level_ahead
 from service.storage.records import MotorHealth
 from service.web.fleet.rows import doubt
 from service.web.fleet.states import FleetState, states_of
@@ -22,6 +22,7 @@ class MotorVerdict:
     all.  change: what of it has come since then.  since_ns: first record that shows it; is_from_first_record:
     it was there before.  limit: level that the forecast is about; days: likely not before, middle, likely by
     then, counted from the latest record; None without a trend.  fault_level: the motor's limit.
+    parts: what is said of each part; is_of_winding: nothing counts but stator and channels.
     visible: least step of the level that would be seen; is_of_record: within the latest record alone, because
     the reference is not complete.  records: of the reference.  doubt: why a healthy motor may not be.
     """
@@ -45,6 +46,8 @@ class MotorVerdict:
     advice: str
     doubt: str
     reasons: Sequence[str]
+    parts: Sequence[PartOfMotor]
+    is_of_winding: bool
 
     @property
     def state(self) -> FleetState:
@@ -95,4 +98,6 @@ def motor_verdict(
         advice=advice_now(condition.advice, condition.state, why),
         doubt=doubt(condition, None if health.diagnosis is None else health.diagnosis.verdict),
         reasons=condition.reasons,
+        parts=condition.parts,
+        is_of_winding=not beside_stator(condition),
     )

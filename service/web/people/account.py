@@ -9,6 +9,7 @@ from starlette.responses import Response
 from service.access.identities import Way
 from service.access.passwords import PASSWORD_RULE
 from service.access.permissions import MEANINGS, Permission
+from service.access.second_factors import is_required
 from service.api.access import sessions, tokens
 from service.api.access.requirements import require
 from service.api.access.schemas import PasswordChange
@@ -16,7 +17,7 @@ from service.api.problems import WrongFieldError
 from service.storage import NotFoundError
 from service.web.forms import document_of_form
 from service.web.people.token_form import TokenForm, show_new_token, token_request
-from service.web.people.users import LIFETIMES, MOST_SHOWN, scope_choices, token_lines
+from service.web.people.users import MOST_SHOWN, lifetimes, scope_choices, token_lines
 from service.web.view import Looking
 
 router = APIRouter()
@@ -41,11 +42,12 @@ def show_account(view: Looking) -> Response:
         account=account,
         known=user is not None,
         has_password=user is not None and user.has_password,
+        is_factor_required=is_required(view.context.settings.access, asking.actor.roles),
         is_nobody=asking.way is Way.NONE,
         meanings=[(one.value, MEANINGS[one]) for one in account.permissions],
-        tokens=token_lines(found, now_ns=view.now_ns),
+        tokens=token_lines(view.context, found, now_ns=view.now_ns),
         scopes=scope_choices(asking.permissions),
-        lifetimes=LIFETIMES,
+        lifetimes=lifetimes(view.context.settings.access),
         rule=PASSWORD_RULE,
     )
 
@@ -54,7 +56,7 @@ def show_account(view: Looking) -> Response:
 async def change_password(
     view: Looking, request: Request, old: Secret = "", new: Secret = "", again: Secret = ""
 ) -> Response:
-    """Change the own password; all own sessions end, this one too."""
+    """Change the own password; all own sessions end, this one too, and all own tokens."""
     if new != again:
         message = "expected the same password twice, found two"
         raise WrongFieldError("body.again", message)
@@ -68,6 +70,13 @@ def add_own_token(view: Looking, form: Annotated[TokenForm, Form()]) -> Response
     """Make an own token, and show its secret this once."""
     made = tokens.add_own_token(view.context, view.asking, token_request(form, view.now_ns))
     return show_new_token(view, made, "/account")
+
+
+@router.post("/account/tokens-end", dependencies=ACCOUNT)
+def revoke_own_tokens(view: Looking) -> Response:
+    """End all of the own tokens."""
+    tokens.revoke_own_tokens(view.context, view.asking.actor)
+    return view.done("/account", "tokens-revoked")
 
 
 @router.post("/account/tokens/{token_id}/revocation", dependencies=ACCOUNT)

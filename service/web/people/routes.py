@@ -6,21 +6,18 @@ from uuid import UUID
 from fastapi import APIRouter, Form, Query, Request
 from starlette.responses import Response
 
-from service.access.permissions import Permission, permissions_of
+from service.access.permissions import Permission
 from service.api.access import tokens, users
 from service.api.access.requirements import require
 from service.api.access.schemas import NewPassword, UserChange, UserName, UserRequest
 from service.storage.records import Role
 from service.web.addresses import address
 from service.web.forms import document_of_form
-from service.web.people.token_form import TokenForm, show_new_token, token_request
 from service.web.people.users import (
-    LIFETIMES,
     MOST_SHOWN,
     lines_of,
     people,
     roles,
-    scope_choices,
     token_lines,
 )
 from service.web.view import Looking, View
@@ -69,10 +66,8 @@ def show_user(view: Looking, name: UserName) -> Response:
         "people/user.html",
         title=name,
         line=line,
-        tokens=token_lines(found, now_ns=view.now_ns),
+        tokens=token_lines(view.context, found, now_ns=view.now_ns),
         roles=roles(),
-        scopes=scope_choices(permissions_of(user.roles)),
-        lifetimes=LIFETIMES,
         is_self=name == view.asking.actor.name,
     )
 
@@ -93,7 +88,7 @@ def change_user(
 
 @router.post("/people/{name}/password", dependencies=USERS)
 async def set_password(view: Looking, name: UserName, password: Secret = "") -> Response:
-    """Give a user another password."""
+    """Give another user a password, which they change first."""
     wanted = document_of_form(NewPassword, {"password": password})
     await users.set_password(view.context, name, wanted, view.asking.actor)
     return _done(view, name, "password-set")
@@ -101,7 +96,7 @@ async def set_password(view: Looking, name: UserName, password: Secret = "") -> 
 
 @router.post("/people/{name}/sessions-end", dependencies=USERS)
 def end_sessions(view: Looking, name: UserName) -> Response:
-    """End all sessions of a user."""
+    """End all sessions and all tokens of a user."""
     users.end_sessions(view.context, name, view.asking.actor)
     return _done(view, name, "sessions-ended")
 
@@ -120,11 +115,11 @@ def delete_user(view: Looking, name: UserName) -> Response:
     return view.done("/people", "user-deleted")
 
 
-@router.post("/people/{name}/tokens", dependencies=USERS)
-def add_token(view: Looking, name: UserName, form: Annotated[TokenForm, Form()]) -> Response:
-    """Make a token of a user, and show its secret this once."""
-    made = tokens.add_token(view.context, name, token_request(form, view.now_ns), view.asking.actor)
-    return show_new_token(view, made, address("/people", name))
+@router.post("/people/{name}/tokens-end", dependencies=USERS)
+def revoke_tokens(view: Looking, name: UserName) -> Response:
+    """End all tokens of a user."""
+    tokens.revoke_tokens(view.context, name, view.asking.actor)
+    return _done(view, name, "tokens-revoked")
 
 
 @router.post("/people/{name}/tokens/{token_id}/revocation", dependencies=USERS)

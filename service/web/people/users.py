@@ -7,20 +7,17 @@ from typing import Final
 from core.units import NANOSECONDS_PER_DAY
 from service.access.identities import idle_since_ns, oldest_session_ns
 from service.access.permissions import MEANINGS, PERMISSIONS_OF, Permission
+from service.access.tokens import as_it_counts
 from service.api.context import ApiContext
 from service.api.pages import decode, encode
+from service.configuration.access import AccessSettings
 from service.storage.records import ApiToken, Role, User
 from service.web.addresses import address
 
 MOST_SHOWN: Final = 100
 
-LIFETIMES: Final[Sequence[tuple[int | None, str]]] = (
-    (30, "30 days"),
-    (90, "90 days"),
-    (365, "1 year"),
-    (None, "without an end"),
-)
-"""How long a new token may be used."""
+LIFETIMES: Final = (7, 30, 90, 365)
+"""How long a new token may be used [days], beside what the settings let one last."""
 
 SOON_NS: Final = 14 * NANOSECONDS_PER_DAY
 
@@ -87,7 +84,7 @@ def people(context: ApiContext, *, cursor: str | None, tokens_cursor: str | None
     return People(
         lines=lines_of(context, users.items, now_ns=now_ns),
         next_path=None if users.next is None else address("/people", cursor=encode(users.next)),
-        tokens=token_lines(tokens.items, now_ns=now_ns),
+        tokens=token_lines(context, tokens.items, now_ns=now_ns),
         next_tokens_path=None
         if tokens.next is None
         else address("/people", tokens_cursor=encode(tokens.next)) + "#tokens",
@@ -109,9 +106,17 @@ def lines_of(context: ApiContext, users: Sequence[User], *, now_ns: int) -> Sequ
     ]
 
 
-def token_lines(tokens: Sequence[ApiToken], *, now_ns: int) -> Sequence[TokenLine]:
+def token_lines(context: ApiContext, tokens: Sequence[ApiToken], *, now_ns: int) -> Sequence[TokenLine]:
     """Return tokens as the lists show them."""
-    return [_token_line(token, now_ns) for token in tokens]
+    return [_token_line(as_it_counts(token, context.settings.access), now_ns) for token in tokens]
+
+
+def lifetimes(access: AccessSettings) -> Sequence[tuple[int | None, str]]:
+    """Return how long a new token may be used, in days and words; None for as long as it may."""
+    most = access.token_days
+    if most == "unlimited":
+        return [*((days, f"{days} days") for days in LIFETIMES), (None, "without an end")]
+    return [*((days, f"{days} days") for days in LIFETIMES if days < most), (None, f"{most:g} days")]
 
 
 def roles() -> Sequence[RoleWords]:

@@ -24,7 +24,7 @@ from service.web.choices import motor_names
 from service.web.recording.comparison import comparison
 from service.web.recording.drawn_model import drawn_model
 from service.web.recording.page_data import MOST_CHOICES, cursor_of, recording_page
-from service.web.recording.verdicts import look_of, sentence, words_of
+from service.web.recording.verdicts import look_of, page_look, page_words, sentence, words_of
 from service.web.view import Looking, View
 
 router = APIRouter()
@@ -152,8 +152,8 @@ async def show_recording(
             title=f"{page.entry.motor}: recording {page.entry.name}",
             page=page,
             said=sentence(page.entry, page.diagnosis),
-            look=look_of(None if page.diagnosis is None else page.diagnosis.verdict),
-            words=words_of(None if page.diagnosis is None else page.diagnosis.verdict),
+            look=page_look(page.diagnosis),
+            words=page_words(page.diagnosis),
             cursor=None if page.waveforms is None else page.waveforms.cursor,
             compared=compared,
             drawn=drawn,

@@ -32,7 +32,7 @@ class LinkHistory:
     def sentence(self) -> str:
         """Return the picture in words, for those who cannot see it too."""
         if self.answered is None:
-            return f"Nothing is known of the link in the last {_days(self.days)}."
+            return f"No data of the link in the last {_days(self.days)}."
         times = {0: "no outage", 1: "one outage"}.get(self.outages, f"{self.outages} outages")
         whole = f"the last {_days(self.days)}"
         if self.known <= ALL_BUT_GAPS:

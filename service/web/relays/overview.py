@@ -22,12 +22,6 @@ from service.web.relays.links import LinkHistory, link_history
 MOST_SHOWN: Final = 100
 MOST_CHANGES: Final = 50
 
-LINK_WORDS: Final[Mapping[LinkState, str]] = {
-    LinkState.UP: "answers",
-    LinkState.DOWN: "does not answer",
-    LinkState.QUARANTINED: "set aside",
-    LinkState.UNKNOWN: "not asked yet",
-}
 LINK_LOOKS: Final[Mapping[LinkState, str]] = {
     LinkState.UP: "healthy",
     LinkState.DOWN: "fault",
@@ -42,7 +36,7 @@ USED: Final[Sequence[tuple[str, str]]] = (
     ("control_model", "Control model"),
     ("record_made", "Record made"),
     ("record_number", "Record number"),
-    ("records_told_by", "Records told by"),
+    ("records_told_by", "Records announced by"),
     ("report_control", "Report control"),
     ("events_directory", "Events directory"),
     ("text_reports", "Text reports"),
@@ -110,9 +104,9 @@ class RelayLine:
     certificate: CertificateEnd | None
 
     @property
-    def link_words(self) -> str:
+    def link_state(self) -> str:
         """Return the state of its link in words."""
-        return LINK_WORDS[self.overview.relay.link_state]
+        return str(self.overview.relay.link_state)
 
     @property
     def look(self) -> str:
@@ -185,13 +179,13 @@ def relay_list(repository: Repository, settings: Settings, choice: RelayChoice) 
         choice=choice,
         counts=[
             LinkCount(
-                LINK_WORDS[state],
+                str(state),
                 LINK_LOOKS[state],
                 numbers[state],
                 choice.with_link(state),
                 state is choice.link,
             )
-            for state in LINK_WORDS
+            for state in LINK_LOOKS
             if numbers.get(state)
         ],
         lines=[_line(overview, settings) for overview in found.items],

@@ -13,7 +13,7 @@ from service.storage.states import LinkState
 from service.web.addresses import address
 from service.web.live.routes import live_address
 from service.web.pictures import markup
-from service.web.relays.overview import LINK_WORDS, RelayChoice, relay_details, relay_list
+from service.web.relays.overview import LINK_LOOKS, RelayChoice, relay_details, relay_list
 from service.web.view import Looking
 
 router = APIRouter()
@@ -45,7 +45,7 @@ def show_relays(
         title="Relays",
         found=found,
         limits=view.context.settings.alarms,
-        link_words=LINK_WORDS,
+        link_states=list(LINK_LOOKS),
     )
 
 
@@ -63,7 +63,6 @@ def show_relay(
         details=details,
         picture=markup(details.picture),
         limits=view.context.settings.alarms,
-        link_words=LINK_WORDS,
         spans=SPANS,
     )
 

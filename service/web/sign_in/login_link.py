@@ -10,9 +10,9 @@ from fastapi.concurrency import run_in_threadpool
 from starlette.responses import Response
 
 from service.access import logins
-from service.access.identities import identity_of_session
+from service.access.identities import identity_of_session, permissions_after_login
 from service.access.login_links import PATH, user_of_link
-from service.access.permissions import Permission, permissions_of
+from service.access.permissions import Permission
 from service.api.access.client_address import client_address
 from service.api.access.cookies import session_secret, set_session
 from service.api.access.requirements import open_to_all
@@ -45,8 +45,9 @@ async def follow_link(
     if user is None:
         permissions = await run_in_threadpool(_permissions_here, context, request)
         return _leading_to(home_of(permissions), request)
-    session = await run_in_threadpool(_begin, context, user, origin.address)
-    answer = _leading_to(home_of(permissions_of(user.roles)), request)
+    old = session_secret(request.headers, encrypted=origin.is_encrypted)
+    session = await run_in_threadpool(_begin, context, user, origin.address, old)
+    answer = _leading_to(home_of(permissions_after_login(context.settings.access, user)), request)
     seconds = context.settings.access.session_hours * 3600
     set_session(answer, session, seconds=seconds, encrypted=origin.is_encrypted)
     return answer
@@ -59,12 +60,18 @@ def _leading_to(home: str, request: Request) -> Response:
     return answer
 
 
-def _begin(context: ApiContext, user: User, address: str) -> str:
+def _begin(context: ApiContext, user: User, address: str, old: str | None) -> str:
     """Return the secret of a new session. Raises ProblemError (410)."""
     by = Actor(user.name, address, user.roles)
     try:
         return logins.begin_session(
-            context.repository, context.settings.access, by, WAY, now_ns=time.time_ns()
+            context.repository,
+            context.settings.access,
+            by,
+            WAY,
+            second_factor=True,
+            ends=old,
+            now_ns=time.time_ns(),
         )
     except NotFoundError as error:
         raise ProblemError(HTTPStatus.GONE, USED) from error
@@ -75,7 +82,8 @@ def _permissions_here(context: ApiContext, request: Request) -> frozenset[Permis
 
     Raises ProblemError (410) where it has none.
     """
-    secret = session_secret(request.headers) or ""
+    origin = client_address(request.scope, context.settings.access.proxy)
+    secret = session_secret(request.headers, encrypted=origin.is_encrypted) or ""
     found = identity_of_session(context.repository, context.settings.access, secret, now_ns=time.time_ns())
     if found is None:
         raise ProblemError(HTTPStatus.GONE, USED)

@@ -6,13 +6,16 @@ from fastapi import APIRouter, Form, Query, Request
 from fastapi.concurrency import run_in_threadpool
 from starlette.responses import RedirectResponse, Response
 
+from service.access.identities import is_account_first, permissions_after_login
 from service.access.logins import LoginLockedError
-from service.access.permissions import Permission, permissions_of
+from service.access.permissions import Permission
 from service.api.access import sessions
 from service.api.access.requirements import open_to_all, require
+from service.api.access.schemas import LoginRequest
 from service.api.context import Context
 from service.api.problems import ProblemError
 from service.web.addresses import LONGEST, own_address
+from service.web.forms import document_of_form
 from service.web.navigation import home_of
 from service.web.notices import notice
 from service.web.rendering import html_response, rendered
@@ -44,19 +47,23 @@ async def log_in(
     request: Request,
     name: Annotated[str, Form(max_length=200)],
     password: Annotated[str, Form(max_length=1000)],
+    code: Annotated[str, Form(max_length=40)] = "",
     next_: Annotated[str | None, Form(alias="next", max_length=LONGEST)] = None,
 ) -> Response:
     """Begin a session and go on to where somebody wanted to go."""
     answer = RedirectResponse("/", status_code=303)
     try:
-        user = await sessions.begin_session(context, request, answer, name, password)
+        wanted = document_of_form(LoginRequest, {"name": name, "password": password, "code": code})
+        user = await sessions.begin_session(context, request, answer, wanted)
     except (ProblemError, LoginLockedError) as error:
         status = error.status if isinstance(error, ProblemError) else 429
         has_users = await run_in_threadpool(context.repository.has_users)
         data = _about(context, own_address(next_, ""), has_users=has_users)
         text = rendered("sign_in/login.html", **data, notice=None, problem=str(error), name=name)
         return html_response(text, request.headers, status=status, cache="no-store")
-    answer.headers["Location"] = own_address(next_, home_of(permissions_of(user.roles)))
+    access = context.settings.access
+    home = home_of(permissions_after_login(access, user))
+    answer.headers["Location"] = home if is_account_first(access, user) else own_address(next_, home)
     return answer
 
 
@@ -70,5 +77,9 @@ def log_out(view: Looking) -> Response:
 
 
 def _about(context: Context, next_: str, *, has_users: bool) -> dict[str, object]:
-    oidc = sessions.OIDC_PATH if context.settings.access.oidc else None
-    return {"title": "Log in", "next": next_, "oidc": oidc, "has_users": has_users}
+    return {
+        "title": "Log in",
+        "next": next_,
+        "has_users": has_users,
+        "ways": sessions.get_login_ways(context),
+    }

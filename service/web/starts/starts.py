@@ -7,7 +7,7 @@ from typing import Final
 from markupsafe import Markup
 
 from core.starts.compared import StartChanges
-from service.alarms.start_rules import LATEST
+from core.starts.notable import LATEST
 from service.api.pages import decode, encode
 from service.pictures.looks import PAGE, Look
 from service.pictures.starts import StartLine, starts_picture

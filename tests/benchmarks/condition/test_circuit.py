@@ -87,7 +87,7 @@ def test_currents_are_those_of_the_models_of_the_core(
             winding=np.array([winding]),
             load_level=np.array([0.6]),
             time_offset_s=np.zeros(1),
-            path_ratio=np.array([path]),
+            leakage=np.array([1.0 / (1.0 + path)]),
         )
     )
     lines = np.stack([found.real, found.imag], axis=1)

@@ -103,7 +103,16 @@ def test_made_files_are_read_as_their_names_say(tmp_path: Path) -> None:
         for name in (
             "constant spare channel", "constant spare channel without a ratio", "constant channel of 24",
             "revision 2000", "revision 1998", "blank lines", *made_files.STAMPS,
+            "date with spaces", "date and time in one field", "year first", "month first",
+            "year of two digits", "2013 with +5h", "comma in the station's name",
+            "comma in a channel's name", "comma in quotes", "commas at the ends of lines",
+            "counts of samples for each rate", "line end behind binary data",
+            "ASCII lines that end in a comma", "UTF-16", "UTF-16 of the configuration alone",
+            "a step back and a gap",
         )
+    } | {
+        f"{name}.CEV"
+        for name in ("event report in UTF-16", "two event reports", "words behind an event report")
     }  # fmt: skip
     agreements = {one.comparison.agreement for one in examined.values()}
     assert Agreement.DIFFERS not in agreements

@@ -24,6 +24,7 @@ DO_NOT_GROW = frozenset(
         "api_tokens",
         "failed_logins",
         "login_links",
+        "recovery_codes",
         "user_sessions",
         "users",
         "sites",

@@ -5,10 +5,10 @@ from math import log
 
 import pytest
 
-from core.classification.causes import PRIORS, Cause
 from core.classification.classification import classify
 from core.classification.evidence import MOST_NATS, Block, Evidence, Verdict
 from core.classification.telling import what_tells
+from core.diagnosis.causes import PRIORS, Cause
 
 TURNS, JOINT, CAGE = Cause.SHORTED_TURNS, Cause.CONNECTION, Cause.ROTOR
 
@@ -47,9 +47,11 @@ def test_two_causes_with_like_figures_are_not_told_apart_and_what_would_tell_is_
 
 
 def test_no_block_is_more_certain_than_models_are() -> None:
-    block = _either(10.0 * MOST_NATS, 8.0 * MOST_NATS, 10.0 * MOST_NATS)
+    block = _either(10.0 * MOST_NATS, 10.0 * MOST_NATS - 3.0, 10.0 * MOST_NATS)
     assert block.of(frozenset({TURNS})) == pytest.approx(MOST_NATS)
-    assert block.of(frozenset({JOINT})) == pytest.approx(0.8 * MOST_NATS)
+    assert block.of(frozenset({JOINT})) == pytest.approx(MOST_NATS - 3.0), "as much less likely as before"
+    far = _either(10.0 * MOST_NATS, 2.0 * MOST_NATS, 10.0 * MOST_NATS)
+    assert far.of(frozenset({JOINT})) == 0.0
     assert block.of(frozenset({CAGE})) == 0.0
 
 
@@ -58,6 +60,14 @@ def test_a_motor_of_whose_winding_nothing_is_known_is_not_called_healthy() -> No
     assert not found.is_told
     assert found.words == "nothing is seen, and not all is known"
     assert not classify(Evidence(())).is_told
+
+
+def test_without_evidence_there_is_no_answer() -> None:
+    document = classify(Evidence((), {TURNS: "the quality gate refused the record"})).as_dict()
+    assert (document["answer"], document["probability"], document["is_told"]) == ([], 0.0, False)
+    assert (document["words"], document["explanations"]) == ("not assessed", [])
+    assert isinstance(document["likelihoods"], list)
+    assert [one["cause"] for one in document["likelihoods"]] == [str(TURNS)]
 
 
 def test_what_nothing_is_known_of_keeps_its_prior_and_is_named() -> None:

@@ -1,16 +1,14 @@
 """The answer of a motor, from a condition, a rotor and records that are given."""
 
-from collections.abc import Mapping
-from itertools import combinations
 from typing import Any
 
 import pytest
 
-from core.classification.causes import Cause, Causes
 from core.classification.classification import Classification
 from core.classification.motor import MotorEvidence, classify_motor
 from core.classification.record_answer import RecordAnswer
 from core.condition.kinds import Kind, State
+from core.diagnosis.causes import Cause
 from core.rotor.finding import RotorState
 from core.rotor.trend import RotorCondition
 from core.starts.compared import ChangeState, StartCause, StartChanges
@@ -94,15 +92,13 @@ def test_candidates_of_a_fault_are_together_as_sure_as_one_that_is_named() -> No
 def test_records_tell_which_candidate_of_a_fault_is_there(likelier: Cause) -> None:
     condition = _condition(Kind.UNCLEAR, State.FAULT, Kind.SHORTED_TURNS, Kind.CONNECTION)
     ratios = {"SHORTED_TURNS": 20.0, "CONNECTION": 20.0, likelier.name: 26.0}
-    found = _answer(condition, records=_with(None, **ratios))
+    found = _answer(condition, records=_with(**ratios))
     assert found.is_told
     assert found.answer.causes == {likelier}
 
 
 def test_the_records_tell_while_the_condition_does_not_know_what_surprises() -> None:
-    seen = (Cause.SHORTED_TURNS, Cause.CONNECTION, Cause.VOLTAGE_CHANNEL)
-    pairs = {frozenset(two): 20.0 for two in combinations(seen, 2)}
-    records = _with(pairs, SHORTED_TURNS=19.5, CONNECTION=12.0, VOLTAGE_CHANNEL=8.0)
+    records = _with(SHORTED_TURNS=19.5, CONNECTION=12.0, VOLTAGE_CHANNEL=8.0)
     found = _answer(_condition(Kind.UNCLEAR, State.WATCH), records=records)
     assert found.is_told
     assert found.answer.causes == {Cause.SHORTED_TURNS}
@@ -133,9 +129,9 @@ def test_causes_of_one_drift_are_not_there_all_at_once() -> None:
     assert found.is_told
 
 
-def _with(pairs: Mapping[Causes, float] | None = None, **ratios: float) -> list[RecordAnswer]:
+def _with(**ratios: float) -> list[RecordAnswer]:
     told = {Cause[name]: ratio for name, ratio in ratios.items()}
-    return [RecordAnswer({**QUIET.log_likelihood_ratios, **told}, {}, pairs)] * 3
+    return [RecordAnswer({**QUIET.log_likelihood_ratios, **told}, {})] * 3
 
 
 def _drift(*causes: DriftCause) -> TrackedParameters:
@@ -153,32 +149,15 @@ def _drift(*causes: DriftCause) -> TrackedParameters:
 
 
 def test_what_a_change_explains_speaks_for_no_other_cause() -> None:
-    records = _with(SHORTED_TURNS=60.0, PARAMETERS=38.0, SUPPLY=6.0)
+    records = _with(SHORTED_TURNS=60.0, PARAMETERS=38.0)
     assert _answer(_condition(Kind.SHORTED_TURNS), records=records).answer.causes == {Cause.SHORTED_TURNS}
     both = _answer(_condition(Kind.SHORTED_TURNS), records=_with(SHORTED_TURNS=20.0, SUPPLY=60.0))
     assert both.answer.causes == {Cause.SHORTED_TURNS, Cause.SUPPLY}
 
 
-@pytest.mark.parametrize(
-    ("together", "causes"),
-    [(58.5, {Cause.SHORTED_TURNS}), (90.0, {Cause.SHORTED_TURNS, Cause.SUPPLY})],
-    ids=["usual supply", "unbalanced supply"],
-)
-def test_a_supply_counts_by_what_it_explains_beside_the_turns(together: float, causes: set[Cause]) -> None:
-    """Alone it explains most of what turns make of the figures, which says nothing of it."""
-    pairs = {frozenset({Cause.SHORTED_TURNS, Cause.SUPPLY}): together}
-    records = _with(pairs, SHORTED_TURNS=60.0, SUPPLY=58.0)
-    found = _answer(_condition(Kind.SHORTED_TURNS), records=records)
-    assert found.answer.causes == causes
-    assert found.is_told
-    supply = next(one for one in found.likelihoods if one.cause is Cause.SUPPLY)
-    assert supply.log_likelihood_ratio == pytest.approx(together - 60.0)
-
-
 def test_two_causes_that_explain_the_same_are_not_both_told() -> None:
-    pairs = {frozenset({Cause.SUPPLY, Cause.VOLTAGE_CHANNEL}): 20.5}
-    found = _answer(records=_with(pairs, SUPPLY=20.0, VOLTAGE_CHANNEL=12.0))
-    assert found.answer.causes == {Cause.SUPPLY}
+    found = _answer(records=_with(CURRENT_CHANNEL=20.0, VOLTAGE_CHANNEL=12.0))
+    assert found.answer.causes == {Cause.CURRENT_CHANNEL}
     assert found.is_told
 
 
@@ -228,10 +207,5 @@ def test_records_are_read_back_from_their_documents() -> None:
     document = _answer(rotor=UNEVEN).as_dict()
     read = RecordAnswer.from_dict(document)
     assert read.log_likelihood_ratios[Cause.ROTOR] > 10.0
-    assert read.pairs is not None
-    assert frozenset({Cause.SHORTED_TURNS, Cause.CONNECTION}) in read.pairs
-    assert RecordAnswer.from_dict({"likelihoods": document["likelihoods"]}).pairs is None
-    with pytest.raises(TypeError, match="pairs"):
-        RecordAnswer.from_dict(document | {"pairs": "none"})
     with pytest.raises(TypeError, match="likelihoods"):
         RecordAnswer.from_dict({"likelihoods": None})

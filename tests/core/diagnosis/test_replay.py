@@ -92,9 +92,11 @@ def test_parameters_that_give_no_currents_are_refused(changed: dict[str, Any], t
 
 def test_a_recording_that_is_refused_and_an_unknown_model_are_told() -> None:
     record = recording(running(REFERENCE, 0.5), noise=0.005)
-    fit = FittedParameters(mu_f=0.0, theta_f=0, load_level=0.5, time_offset_s=0.0, path_ratio=0.0)
+    fit = FittedParameters(
+        mu_f=0.0, theta_f=0, load_level=0.5, time_offset_s=0.0, leakage=1.0, axis_rad=0.0, linkage=1.0
+    )
     flat = replace(record, samples=record.samples * 0.0)
     with pytest.raises(DiagnosisError, match="quality gate refuses"):
         replay(flat, REFERENCE, fit, model=Model.SPLIT_WINDING)
-    with pytest.raises(DiagnosisError, match="unknown; known: split-winding"):
+    with pytest.raises(DiagnosisError, match="unknown; known: coil, split-winding"):
         replay(record, REFERENCE, fit, model="other")

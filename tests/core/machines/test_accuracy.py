@@ -37,7 +37,7 @@ def feed(motor: Motor, rate: float, samples: int, *, negative: float, fifth: flo
 
 def one_candidate(level: float, load: float = reference.LOAD_LEVEL) -> Candidates:
     one = np.ones(1)
-    return Candidates(level * one, np.array([reference.WINDING]), load * one, 0.0 * one, 0.0 * one)
+    return Candidates(level * one, np.array([reference.WINDING]), load * one, 0.0 * one)
 
 
 def relative_rms(found: Array, expected: Array) -> float:
@@ -150,7 +150,7 @@ def test_a_start_at_any_sample_rate(rate: float) -> None:
 
 
 def test_a_supply_of_other_sequence_turns_the_machine_the_other_way() -> None:
-    """A-c-b is the mirror image: terminals b and c change places, in the fault as in the currents."""
+    """A-c-b is the mirror image: b and c change places, and a coil comes to lie on its phase's other side."""
     samples = 3_000
     volts = feed(REFERENCE, 10_000.0, samples, negative=0.0, fifth=0.0)
     mirror = np.array([1.0, -1.0])
@@ -159,9 +159,11 @@ def test_a_supply_of_other_sequence_turns_the_machine_the_other_way() -> None:
     one = np.ones(1)
     forward, backward = (
         Playback(SplitWinding(), REFERENCE, side, window, LoadLaw.LINEAR, Beginning.REST).trajectories(
-            Candidates(0.05 * one, np.array([winding]), 0.8 * one, 0.0 * one, 0.0 * one)
+            Candidates(
+                0.05 * one, np.array([winding]), 0.8 * one, 0.0 * one, leakage=0.5 * one, axis_rad=axis * one
+            )
         )
-        for side, winding in ((volts, 1), (mirrored, 2))
+        for side, winding, axis in ((volts, 1, 0.35), (mirrored, 2, -0.35))
     )
     assert backward.current[0] == pytest.approx(mirror[:, np.newaxis] * forward.current[0], abs=1e-9)
     assert backward.speed == pytest.approx(-forward.speed, abs=1e-7)

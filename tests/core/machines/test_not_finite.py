@@ -25,6 +25,9 @@ COMPILED = [
 ]
 
 
+MODELS = (SplitWinding(), BrokenBars())
+
+
 def playback(model: StatorModel) -> Playback:
     angle = W_S / RATE * np.arange(SAMPLES)
     voltage = 380.0 * np.stack([np.cos(angle), np.sin(angle)])
@@ -34,9 +37,7 @@ def playback(model: StatorModel) -> Playback:
 
 def candidates(fault_level: list[float], load_level: list[float]) -> Candidates:
     n = len(fault_level)
-    return Candidates(
-        np.array(fault_level), np.zeros(n, np.int64), np.array(load_level), np.zeros(n), np.zeros(n)
-    )
+    return Candidates(np.array(fault_level), np.zeros(n, np.int64), np.array(load_level), np.zeros(n))
 
 
 @pytest.mark.parametrize(("module", "name"), COMPILED, ids=[name for _, name in COMPILED])
@@ -45,10 +46,13 @@ def test_no_function_is_compiled_as_if_all_numbers_were_finite(module: object, n
     assert set(allowed) == {"contract", "reassoc", "nsz", "arcp"}
 
 
-@pytest.mark.parametrize("model", [SplitWinding(), BrokenBars()], ids=lambda model: model.name)
 @pytest.mark.parametrize(
-    ("field", "value"),
-    [("fault_level", np.nan), ("load_level", np.nan), ("load_level", np.inf), ("load_level", -np.inf)],
+    ("model", "field", "value"),
+    [
+        *((model, "fault_level", np.nan) for model in MODELS),
+        *((model, "load_level", value) for model in MODELS for value in (np.nan, np.inf, -np.inf)),
+        *((SplitWinding(), field, np.nan) for field in ("leakage", "axis_rad", "linkage")),
+    ],
 )
 @pytest.mark.filterwarnings("ignore:.*:RuntimeWarning")
 def test_what_is_not_finite_is_infinitely_far_and_changes_nothing_else(

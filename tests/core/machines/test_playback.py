@@ -46,7 +46,7 @@ def feed(motor: Motor, rate: float, samples: int, *, clean: bool = False) -> Sup
 
 def candidate(mu: float, winding: int, load: float, delay: float = 0.0) -> Candidates:
     one = np.ones(1)
-    return Candidates(mu * one, np.array([winding]), load * one, delay * one, 0.0 * one)
+    return Candidates(mu * one, np.array([winding]), load * one, delay * one)
 
 
 @pytest.mark.parametrize(("load", "rpm", "amps"), [
@@ -80,9 +80,7 @@ def test_no_fault_is_the_healthy_machine_and_small_faults_tend_to_it(model: Stat
                         window_of_record(1_500, 10_000.0, 50.0, 1.0))  # fmt: skip
     levels = np.array([0.0, 1e-12, 1e-9, 1e-6, 1e-4])
     ones = np.ones(levels.size)
-    track = playback.trajectories(
-        Candidates(levels, np.ones(levels.size, np.int64), 0.5 * ones, 0.0 * ones, 0.0 * ones)
-    )
+    track = playback.trajectories(Candidates(levels, np.ones(levels.size, np.int64), 0.5 * ones, 0.0 * ones))
     distance = np.abs(track.current - track.current[0]).max(axis=(1, 2))
     assert np.isfinite(track.current).all()
     assert (distance <= 40.0 * levels + 1e-9).all()
@@ -96,7 +94,9 @@ def test_split_winding_agrees_with_phase_circuits_in_star_and_delta(motor: Motor
     fault = Fault(level, 2, ratio * level * motor.parameters.stator_resistance_ohm)
     truth = running(motor, 0.5, fault=fault, unbalance=0.02)
     one = np.ones(1)
-    candidates = Candidates(level / (1 + ratio) * one, np.array([2]), 0.5 * one, 0.0 * one, ratio * one)
+    candidates = Candidates(
+        level / (1 + ratio) * one, np.array([2]), 0.5 * one, 0.0 * one, leakage=one / (1 + ratio)
+    )
     assert_same_phasors(SplitWinding(), motor, truth, candidates)
 
 
@@ -134,9 +134,7 @@ def test_a_delay_of_the_sensors_delays_the_currents() -> None:
                         window_of_record(3_000, 10_000.0, 50.0, 1.0))  # fmt: skip
     delays = np.array([0.0, 3e-4, 3.37e-4, -2.5e-4, 0.0199])
     ones = np.ones(delays.size)
-    track = playback.trajectories(
-        Candidates(0.05 * ones, np.ones(delays.size, np.int64), 0.5 * ones, delays, 0.0 * ones)
-    )
+    track = playback.trajectories(Candidates(0.05 * ones, np.ones(delays.size, np.int64), 0.5 * ones, delays))
     vectors = track.current[:, 0] + 1j * track.current[:, 1]
     turned = np.angle(
         np.mean(vectors[:, 400:2000] * np.exp(-1j * W_S * np.arange(400, 2000) / 10_000.0), axis=1)
@@ -172,7 +170,9 @@ def test_many_candidates_equal_one_by_one() -> None:
         rng.integers(0, 3, n),
         rng.uniform(0, 1, n),
         rng.uniform(0, 0.02, n),
-        np.zeros(n),
+        leakage=rng.uniform(0.1, 1.5, n),
+        axis_rad=rng.uniform(-0.4, 0.4, n),
+        linkage=np.array([1.03]),
     )
     measured = rng.standard_normal((2, 1_200))
     together = playback.squared_error(batch, measured)
@@ -182,6 +182,15 @@ def test_many_candidates_equal_one_by_one() -> None:
     compared = playback.trajectories(batch).current[:, :, window.compare_from - window.first :]
     residual = compared - measured[:, window.compare_from : window.last]
     assert together == pytest.approx((residual**2).sum(axis=(1, 2)), rel=1e-9)
+
+
+def test_one_place_holds_for_all_candidates_and_some_other_number_of_places_is_refused() -> None:
+    three = np.ones(3)
+    batch = Candidates(three, np.zeros(3, np.int64), three, three, axis_rad=np.array([0.1]))
+    assert batch.axis_rad.tolist() == [0.1, 0.1, 0.1]
+    assert batch.leakage.tolist() == batch.linkage.tolist() == [1.0, 1.0, 1.0]
+    with pytest.raises(ValueError, match="broadcast"):
+        Candidates(three, np.zeros(3, np.int64), three, three, leakage=np.ones(2))
 
 
 def test_a_load_beyond_pull_out_has_no_steady_state() -> None:

@@ -19,8 +19,8 @@ from testing.machines.wound_rotors import HOIST, HOIST_WITH_UNKNOWN_RESISTANCE, 
 
 def test_open_rings_show_the_voltage_of_the_plate() -> None:
     """The winding circuit in phase variables, its rotor open, at standstill on rated voltage."""
-    nameplate, machine = HOIST.nameplate, HOIST.parameters
-    circuit = winding_circuit(machine, nameplate.connection)
+    nameplate = HOIST.nameplate
+    circuit = winding_circuit(HOIST)
     w = 2j * pi * nameplate.rated_frequency_Hz
     phases_V = 400.0 / np.sqrt(3.0) * np.exp(-2j * pi / 3.0 * np.arange(3))
     L, R = circuit.inductance(0.0), circuit.resistance

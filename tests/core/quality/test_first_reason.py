@@ -109,13 +109,15 @@ ORDER: list[tuple[str, str, Callable[[], Recording]]] = [
     ("a low voltage, a current lost", "voltage", lambda: edited(edited(steady(), VOLTAGES, 0.2), [1], 0.0)),
     ("a current lost, another scaled", "phase loss", lambda: edited(edited(steady(), [1], 0.0), [2], 0.7)),
     ("one current reversed", "current polarity", lambda: edited(steady(), [2], -1.0)),
-    ("a dip", "supply steadiness", lambda: edited(steady(), VOLTAGES, np.repeat([1.0, 0.75], 3_000))),
+    ("a dip", "no shorted turns seen", lambda: edited(steady(), VOLTAGES, np.repeat([1.0, 0.75], 3_000))),
+    ("two dips", "supply steadiness", lambda: edited(steady(), VOLTAGES, np.repeat(
+        [1.0, 0.75, 1.0, 0.75, 1.0, 0.75], 1_000))),
     ("load rising", "steadiness", lambda: edited(steady(), CURRENTS, np.linspace(1.0, 1.8, 6_000))),
     ("a sample missing in a start", "missing samples", lambda: frozen(started(0, 0.6), [1], 50, 51, np.nan)),
     ("shorted turns", "shorted turns in phase b", lambda: recording(
         running(REFERENCE, 0.6, fault=Fault(0.06, 1)), noise=0.002)),
     ("nothing", "no shorted turns seen above the limit", steady),
-    ("a voltage channel off", "an asymmetry that shorted turns in no phase explain", lambda: edited(
+    ("a voltage channel off", "wrong voltage channel (100%): channel a: error of +5", lambda: edited(
         steady(), [3], 1.06)),
 ]  # fmt: skip
 

@@ -84,3 +84,8 @@ RECORD_1991 = RECORD_1999.but(
     tail=(),
 )
 RECORD_2013 = RECORD_1999.but(identification="PLANT,RELAY 1,2013", tail=("1", "0,0", "0,0"))
+
+
+def unsigned(analog: tuple[str, ...]) -> tuple[str, ...]:
+    """Lines of analogue channels whose limits have no sign."""
+    return tuple(line.replace("-32767,32767", "0,32767") for line in analog)

@@ -57,6 +57,25 @@ def roles(*channels: tuple[str, str, str]) -> list[tuple[Quantity, str | None]]:
         ("Speed", "", "rpm", OTHER, None),
         ("IA", "A", "MA", OTHER, None),
         ("Via", "", "V", OTHER, None),
+        ("IAW", "", "A", CURRENT, "a"),
+        ("ICX", "", "A", CURRENT, "c"),
+        ("IBW1", "", "A", CURRENT, "b"),
+        ("IAT", "", "A", CURRENT, "a"),
+        ("VBY", "", "V", PHASE_VOLTAGE, "b"),
+        ("VCZ", "C", "kV", PHASE_VOLTAGE, "c"),
+        ("MAGNETIC SEP IA", "A", "A", CURRENT, "a"),
+        ("POSITION 3 IB", "", "A", CURRENT, "b"),
+        ("Diffuser pump Ic", "", "A", CURRENT, "c"),
+        ("ANGLESEY VA", "A", "V", PHASE_VOLTAGE, "a"),
+        ("RMS IA", "A", "A", OTHER, None),
+        ("IaMag", "A", "A", OTHER, None),
+        ("IAMAG", "A", "A", OTHER, None),
+        ("IA_RMS", "A", "A", OTHER, None),
+        ("VAang", "A", "V", OTHER, None),
+        ("IDIFA", "A", "A", OTHER, None),
+        ("Idiff B", "B", "A", OTHER, None),
+        ("I1 Neg", "A", "A", OTHER, None),
+        ("VAC", "", "V", OTHER, None),  # any AC voltage
     ],
 )
 def test_one_channel(name: str, phase_field: str, unit: str, quantity: Quantity, phase: str | None) -> None:
@@ -70,6 +89,49 @@ def test_numbered_phases_need_all_three() -> None:
     assert roles(*sequence) == [(CURRENT, None)] * 3
     assert roles(("I1", "A", "A"), ("I2", "B", "A")) == [(CURRENT, "a"), (CURRENT, "b")], "told by the field"
     assert roles(("V1", "", "V"), ("V2", "", "V"), ("V3", "", "V"))[1] == (PHASE_VOLTAGE, "b")
+
+
+@pytest.mark.parametrize("letters", ["ABC", "RST", "RYB", "UVW"])
+@pytest.mark.parametrize("told_by", ["name", "field", "both", "small name"])
+def test_letters_of_the_phases_are_recognised_together(letters: str, told_by: str) -> None:
+    """With two transformers, too: I_R and I_B are the first and the third phase."""
+    first, second, third = tuple(letters)
+    channels: list[tuple[str, str, str]] = []
+    for kind, unit in (("I", "A"), ("V", "V")):
+        for letter in letters:
+            name = f"{kind}{letter}" if told_by != "field" else f"Input {len(channels)}"
+            name = name.title() if told_by == "small name" else name
+            channels.append((name, letter if told_by in ("field", "both") else "", unit))
+    found = roles(*channels)
+    assert found == [(CURRENT, p) for p in "abc"] + [(PHASE_VOLTAGE, p) for p in "abc"]
+    assert roles(channels[0], channels[2]) == [(CURRENT, "a"), (CURRENT, "c")]
+    lines = [(f"V{one}{two}", "", "V") for one, two in ((first, second), (second, third), (third, first))]
+    assert roles(*channels[:3], *lines)[3:] == [(LINE_VOLTAGE, p) for p in ("ab", "bc", "ca")]
+    turned = [(name[0] + name[:0:-1], field, unit) for name, field, unit in lines]
+    assert roles(*channels[:3], *turned)[3:] == [(LINE_VOLTAGE, p) for p in ("ba", "cb", "ac")]
+
+
+def test_a_set_that_is_whole_goes_before_single_letters() -> None:
+    residual = [("IA", "", "A"), ("IB", "", "A"), ("IC", "", "A"), ("IR", "", "A")]
+    assert roles(*residual) == [(CURRENT, "a"), (CURRENT, "b"), (CURRENT, "c"), (CURRENT, None)]
+    assert roles(("IB", "", "A")) == [(CURRENT, "b")]
+    assert roles(("IR", "", "A"), ("IA", "", "A")) == [(CURRENT, None), (CURRENT, "a")]
+    mixed = [
+        ("IA", "", "A"),
+        ("IB", "", "A"),
+        ("IC", "", "A"),
+        ("VR", "", "V"),
+        ("VY", "", "V"),
+        ("VB", "", "V"),
+    ]
+    assert [phase for _, phase in roles(*mixed)] == ["a", "b", "c", "a", "b", "c"]
+
+
+def test_a_line_voltage_the_other_way_round_needs_another_beside_it() -> None:
+    assert roles(("VAB", "", "V"), ("VCB", "", "V")) == [(LINE_VOLTAGE, "ab"), (LINE_VOLTAGE, "cb")]
+    assert roles(("UL1-L2", "", "V"), ("UL3-L2", "", "V")) == [(LINE_VOLTAGE, "ab"), (LINE_VOLTAGE, "cb")]
+    assert roles(("VCB", "", "V")) == [(OTHER, None)]
+    assert roles(("VAC", "", "V"), ("VA", "", "V")) == [(OTHER, None), (PHASE_VOLTAGE, "a")]
 
 
 @pytest.mark.parametrize(

@@ -141,21 +141,6 @@ def test_other_counts_of_samples_are_no_empty_rates(tmp_path: Path, rates: tuple
 
 @pytest.mark.parametrize(
     "start",
-    [
-        "21/11/2024, 6:30: 0.250000",
-        " 21/ 11/2024 ,06: 30:00.250000",
-        "21/11/2024 06:30:00.250000",
-        "21/11/2024,06:30:00.250000,,",
-    ],
-)
-def test_dates_with_spaces(tmp_path: Path, start: str) -> None:
-    recording = lenient_alone(RECORD_1999.but(start=start).write(tmp_path), "read without its spaces")
-    assert recording.start_time_ns == read(RECORD_1999.write(tmp_path)).start_time_ns
-    assert recording.trigger_index == 2
-
-
-@pytest.mark.parametrize(
-    "start",
     ["31/02/2024,06:30:00.25", "00/00/0000,00:00:00.000000", "  /  /    ,  :  :  ", "21/11/2024,25:00:00.0",
      "21/11/0015,06:30:00.25", "21/11/2024,06:30:00. 25", "never"],
 )  # fmt: skip

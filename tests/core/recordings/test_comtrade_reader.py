@@ -15,6 +15,7 @@ from tests.core.recordings.comtrade_files import (
     RECORD_1999,
     RECORD_2013,
     ComtradeFile,
+    unsigned,
 )
 
 START_NS = int(datetime(2024, 11, 21, 6, 30, tzinfo=UTC).timestamp()) * NANOSECONDS_PER_SECOND + 250_000_000
@@ -114,7 +115,7 @@ def test_secondary_values_are_brought_to_the_primary_side(tmp_path: Path) -> Non
 @pytest.mark.parametrize(
     ("record", "marker"),
     [
-        (RECORD_1991, -1),
+        (RECORD_1991.but(analog=unsigned(RECORD_1991.analog)), -1),
         (RECORD_1999, -0x8000),
         (RECORD_1999.but(data_format="ASCII"), 99999),
         (RECORD_2013.but(data_format="ASCII"), 99999),

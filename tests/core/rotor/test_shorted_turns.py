@@ -1,18 +1,17 @@
 """A rotor beside shorted turns: their current comes off, and what is left is the rotor's."""
 
-from cmath import exp
 from dataclasses import replace
 from math import pi
 
 import numpy as np
 import pytest
 
-from core.classification.causes import Cause
 from core.condition.measuring.observing import examine
 from core.diagnosis.acceptance import accept
+from core.diagnosis.causes import Cause
 from core.diagnosis.stator import diagnose_accepted
-from core.diagnosis.verdict import Verdict
-from core.machines.base import CLARKE_PHASE
+from core.diagnosis.verdict import FittedParameters, Verdict
+from core.machines.candidates import Candidates
 from core.machines.parameters import Connection, Motor
 from core.machines.split_winding import SplitWinding
 from core.rotor.baseband import Baseband, baseband_of
@@ -30,22 +29,44 @@ WITHIN_DB = 1.5
 
 
 @pytest.mark.parametrize("connection", Connection)
-def test_what_is_left_is_the_current_of_the_sound_rest(connection: Connection) -> None:
-    """Of the split winding's five circuits that is i_s - k n j, solved here at one speed."""
+@pytest.mark.parametrize("winding", [0, 1, 2])
+@pytest.mark.parametrize(
+    ("leakage", "axis_rad", "linkage"), [(0.8, 0.0, 1.0), (0.6, 0.35, 1.04), (0.3, -0.44, 1.05)]
+)
+def test_what_is_left_is_the_current_of_the_machine_without_them(
+    connection: Connection, winding: int, leakage: float, axis_rad: float, linkage: float
+) -> None:
+    """Solved here at one speed, of the split winding's five circuits with the turns and without."""
     motor = replace(MEDIUM, nameplate=replace(MEDIUM.nameplate, connection=connection))
-    level, path_ratio, winding, w_s, slip, volts = 0.05, 0.3, 1, 2.0 * pi * 50.0, 0.02, 400.0
-    circuits = SplitWinding().circuits(motor, np.array([level]), np.array([winding]), np.array([path_ratio]))
-    L, R = circuits.inductance[0], circuits.resistance[0]
-    turning = np.zeros((5, 5))
-    turning[2, 3], turning[3, 2] = -(1.0 - slip) * w_s, (1.0 - slip) * w_s
-    impedance = R + 1j * w_s * L - turning @ L
-    current = np.linalg.solve(impedance, volts * np.array([1.0, -1j, 0.0, 0.0, 0.0]))
-    drawn = (current[0] + 1j * current[1]) / 2.0
-    in_turns = CLARKE_PHASE * exp(2j * pi / 3.0 * winding) * current[4] / 2.0
+    w_s, slip, volts = 2.0 * pi * 50.0, 0.02, 400.0
 
-    found = without_shorted_turns(_steady(volts, drawn, w_s), motor, level, path_ratio)
-    assert abs(in_turns) > 0.1 * abs(drawn)
-    assert found.current == pytest.approx(np.full(8, drawn - in_turns), rel=1e-9)
+    def drawn(level: float) -> complex:
+        one = np.ones(1)
+        circuits = SplitWinding().circuits(
+            motor,
+            Candidates(
+                level * one, np.array([winding]), one, 0.0 * one,
+                leakage=leakage * one, axis_rad=axis_rad * one, linkage=linkage * one,
+            ),
+        )  # fmt: skip
+        L, R = circuits.inductance[0], circuits.resistance[0]
+        turning = np.zeros((5, 5))
+        turning[2, 3], turning[3, 2] = -(1.0 - slip) * w_s, (1.0 - slip) * w_s
+        impedance = R + 1j * w_s * L - turning @ L
+        current = np.linalg.solve(impedance, volts * np.array([1.0, -1j, 0.0, 0.0, 0.0]))
+        return complex(current[0] + 1j * current[1]) / 2.0
+
+    with_turns, sound = drawn(0.05), drawn(0.0)
+    turns = FittedParameters(0.05, 0, 0.5, 0.0, leakage, axis_rad, linkage)
+    found = without_shorted_turns(_steady(volts, with_turns, w_s), motor, turns)
+    assert abs(with_turns - sound) > 0.1 * abs(sound)
+    assert found.current == pytest.approx(np.full(8, sound), rel=1e-9 if axis_rad == 0.0 else 1e-5)
+
+
+def test_no_turns_take_nothing_off() -> None:
+    record = _steady(400.0, 10.0 - 5.0j, 2.0 * pi * 50.0)
+    none = FittedParameters(0.0, 0, 0.5, 0.0, 1.0, 0.0, 1.0)
+    assert without_shorted_turns(record, MEDIUM, none) is record
 
 
 @pytest.mark.parametrize("motor", [REFERENCE, MEDIUM], ids=lambda motor: motor.name)
@@ -80,7 +101,7 @@ def test_turns_that_cannot_be_excluded_take_nothing_off() -> None:
         verdict=Verdict.WATCH,
         theta_f=1,
         mu_f_ci95=(0.003, 0.012),
-        fit=replace(diagnosis.fit, mu_f=0.007, path_ratio=5.0),
+        fit=replace(diagnosis.fit, mu_f=0.007, leakage=1.0 / 6.0),
     )
     found = examine_rotor(baseband_of(accepted), accepted, suspected)
     assert found.severity_dB == pytest.approx(case.asymmetry_dB, abs=1.0)

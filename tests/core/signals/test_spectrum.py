@@ -36,7 +36,7 @@ def test_lines_nearer_than_the_resolution_run_into_one() -> None:
 def test_the_lines_of_a_motor_lie_where_its_slip_and_slots_put_them() -> None:
     lines = {
         one.label: one.frequency_hz
-        for one in lines_of_a_motor(50.0, 2500.0, slip=0.03, pole_pairs=2, rotor_slots=28)
+        for one in lines_of_a_motor(50.0, 2500.0, slip=0.03, pole_pairs=2, rotor_bars=28)
     }
     assert lines["(1−2s)f"] == pytest.approx(47.0)
     assert lines["(1+2s)f"] == pytest.approx(53.0)

@@ -73,14 +73,81 @@ def test_named_phase_voltages_are_taken() -> None:
 
 
 def test_what_is_missing_is_named() -> None:
-    with pytest.raises(RecordingError, match=r"record.cfg: current of phase b, c: .* found 'IA' \[A\]"):
+    with pytest.raises(RecordingError, match=r"current of phase b, c: .* found 'IA' \[A\]: phase a$"):
         terminals(recording((CURRENTS[:1], I_ABC[:1])))
-    with pytest.raises(RecordingError, match=r"voltages: expected three phase voltages.*'VA'"):
+    with pytest.raises(
+        RecordingError, match=r"voltages: expected three phase voltages.*'VA' \[V\]: phase a;"
+    ):
         terminals(recording((CURRENTS, I_ABC), (PHASE_VOLTAGES[:2], V_ABC[:2])))
     with pytest.raises(RecordingError, match="channel 'IX': expected exactly one"):
         terminals(recording((CURRENTS, I_ABC)), currents=("IX", "IB", "IC"))
     with pytest.raises(RecordingError, match="phase voltage in V, found unit 'A'"):
         terminals(recording((CURRENTS, I_ABC)), phase_voltages=("IA", "IB", "IC"))
+
+
+def test_a_refusal_lists_every_channel_with_the_reason() -> None:
+    others = [
+        Channel("IA RMS", Quantity.OTHER, None, "A"),
+        Channel("Input 7", Quantity.CURRENT, None, "A"),
+        Channel("SPARE", Quantity.CURRENT, "b", "A", is_constant=True),
+        Channel("IN", Quantity.CURRENT, "n", "A"),
+        Channel("Speed", Quantity.OTHER, None, "rpm"),
+    ]
+    with pytest.raises(RecordingError) as refused:
+        terminals(recording((others, np.ones((5, 100))), (PHASE_VOLTAGES, V_ABC[:, :100])))
+    assert refused.value.found == (
+        "'IA RMS' [A]: computed, by its name; "
+        "'Input 7' [A]: no phase in its name and phase field, or two that contradict each other; "
+        "'SPARE' [A]: constant; 'IN' [A]: of the neutral; 'Speed' [rpm]: not in A; "
+        "'VA' [V]: not in A; 'VB' [V]: not in A; 'VC' [V]: not in A"
+    )
+    many = [Channel(f"X{k}", Quantity.OTHER, None, "") for k in range(60)]
+    with pytest.raises(RecordingError, match=r"'X39' .*; and 20 more$"):
+        terminals(recording((many, np.ones((60, 100)))))
+
+
+@pytest.mark.parametrize("missing", [0, 1, 2])
+@pytest.mark.parametrize("beside", [None, "IG", "3I0", "I_RES", "GROUND"])
+def test_of_two_current_transformers_the_third_current_is_minus_their_sum(
+    missing: int, beside: str | None
+) -> None:
+    kept = [k for k in range(3) if k != missing]
+    parts = [([CURRENTS[k] for k in kept], I_ABC[kept])]
+    if beside is not None:
+        parts.append(([Channel(beside, Quantity.CURRENT, None, "A")], I_ABC[:1]))
+    found = terminals(recording(*parts))
+    np.testing.assert_allclose(found.current_abc, I_ABC, atol=1e-12)
+    assert found.computed_current == "abc"[missing]
+    assert found.current_channels[missing].name == "-(" + " + ".join(CURRENTS[k].name for k in kept) + ")"
+    assert terminals(recording((CURRENTS, I_ABC))).computed_current is None
+
+
+def test_two_currents_beside_one_of_unknown_phase_are_refused() -> None:
+    unknown = Channel("Input 3", Quantity.CURRENT, None, "A")
+    with pytest.raises(RecordingError, match=r"current of phase c.*'Input 3' \[A\]: no phase"):
+        terminals(recording(([*CURRENTS[:2], unknown], I_ABC)))
+
+
+@pytest.mark.parametrize("count", [2, 3])
+def test_line_voltages_the_other_way_round_count_with_their_sign(count: int) -> None:
+    turned = [Channel(f"V{p.upper()}", Quantity.LINE_VOLTAGE, p, "V") for p in ("ab", "cb", "ac")]
+    signs = np.array([[1.0], [-1.0], [-1.0]])
+    record = recording((CURRENTS, I_ABC), (turned[:count], (signs * V_LINE)[:count]))
+    assert terminals(record).voltage_ab == pytest.approx(clarke(V_ABC))
+    np.testing.assert_array_equal(terminals(record).voltages, V_LINE[:count])
+    if count == 3:
+        assert terminals(record, line_voltages=("VAB", "VCB", "VAC")).voltage_ab == pytest.approx(
+            clarke(V_ABC)
+        )
+
+
+def test_currents_inside_the_delta_become_those_of_the_lines() -> None:
+    circling = 0.3 * np.ones((3, 1)) * I_ABC[:1]
+    windings = (I_ABC - np.roll(I_ABC, -1, axis=0)) / 3.0
+    found = terminals(recording((CURRENTS, windings + circling)), inside_delta=True)
+    np.testing.assert_allclose(found.current_abc, I_ABC - I_ABC.mean(axis=0), atol=1e-12)
+    with pytest.raises(RecordingError, match="all three windings, as the transformers are inside the delta"):
+        terminals(recording((CURRENTS[:2], windings[:2])), inside_delta=True)
 
 
 def test_the_motors_ratios_replace_those_of_the_recording() -> None:

@@ -7,12 +7,14 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from ied_sim.motor.deep_bars import UNSATURATED
 from ied_sim.motor.driving import drive as driven_by
 from ied_sim.motor.eccentricity import Eccentricity
 from ied_sim.motor.fault import TurnFault
 from ied_sim.motor.integration import Loops, integrate
 from ied_sim.motor.load import Load, Pulsation
 from ied_sim.motor.plant import MotorPlant
+from ied_sim.motor.saturation import LINEAR_IRON
 from ied_sim.motor.supply import Supply
 from testing.machines.motors import MEDIUM, REFERENCE
 from tests.ied_sim.motor.plants import plant, short
@@ -44,6 +46,7 @@ def test_no_energy_is_lost_or_made() -> None:
     eccentricity, p = motor.eccentricity, MEDIUM.nameplate.pole_pairs
     loops = Loops(
         circuit.leakage,
+        circuit.deep_leakage,
         circuit.constant,
         circuit.cosine,
         circuit.sine,
@@ -52,6 +55,13 @@ def test_no_energy_is_lost_or_made() -> None:
         motor.inertia_kgm2,
         eccentricity.static,
         eccentricity.dynamic,
+        circuit.stator_current,
+        UNSATURATED.share,
+        UNSATURATED.knee_A,
+        circuit.rotor_current,
+        LINEAR_IRON.share,
+        LINEAR_IRON.exponent,
+        1.0,
     )
     step_s, steps = 1 / 40_000, 12_000
     half_steps = np.arange(2 * steps + 1) * step_s / 2

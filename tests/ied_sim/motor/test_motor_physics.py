@@ -54,7 +54,7 @@ def test_no_shorted_turns_is_exactly_the_healthy_motor(motor: Motor) -> None:
     healthy = plant(motor).operation(0.0, 0.05, 10_000)
     unfaulted = plant(motor, fault=short(0.0)).operation(0.0, 0.05, 10_000)
     assert np.array_equal(healthy.currents_A, unfaulted.currents_A)
-    circuit = winding_circuit(motor.parameters, motor.nameplate.connection, TurnFault(0.0, 1))
+    circuit = winding_circuit(motor, TurnFault(0.0, 1))
     assert circuit.loops == plant(motor).circuit(0.0).loops
 
 
@@ -93,7 +93,7 @@ def test_start_up_agrees_with_an_eighth_order_integrator(
     )
     course = None if fault is None else short(fault.turns, fault.phase, fault.resistance_ohm)
     ours = plant(motor, supply=supply, fault=course).start_up(0.0, 0.15, 10_000).currents_A
-    circuit = winding_circuit(motor.parameters, motor.nameplate.connection, fault)
+    circuit = winding_circuit(motor, fault)
     m, p = circuit.loops, motor.nameplate.pole_pairs
     load_torque = supply.direction * 0.5 * motor.nameplate.rated_torque_Nm
 

@@ -14,7 +14,7 @@ from core.machines.parameters import Connection
 from ied_sim.errors import ScenarioError
 from ied_sim.misbehaviour import Kind
 from ied_sim.relay.plant_clock import ClockSettings
-from ied_sim.scenario import moments, motor_tables, supply_tables, tables
+from ied_sim.scenario import fault_tables, feeder_tables, moments, motor_tables, supply_tables, tables
 from ied_sim.scenario.scenario import healthy_reference, read_clock, read_scenario
 from ied_sim.toml_tables import Table
 
@@ -37,6 +37,13 @@ stator_leakage_H = 0.0328
 rotor_leakage_H = 0.0328
 stator_self_inductance_H = 0.4377
 inertia_kgm2 = 0.0229
+"""
+
+LAP = """
+[motor.winding]
+kind = "lap"
+slots = 36
+coil_pitch_slots = 8
 """
 
 HEALTHY: dict[str, object] = {
@@ -95,7 +102,9 @@ def test_the_documented_example_is_a_scenario(tmp_path: Path) -> None:
     assert relay.plant.supply.harmonics[0].order == 5
     assert relay.plant.sensors.current_delay_s == pytest.approx(41e-6)
     assert relay.plant.sensors.full_scale_A == 260
-    assert relay.truth(0.0)["theta_f"] == 1
+    truth = relay.truth(0.0)
+    assert (truth["theta_f"], truth["coil"], truth["coil_axis_deg"]) == (1, 3, 20.0)
+    assert truth["mu_f"] == pytest.approx(0.6 / 12)
     late = relay.truth(30 * 86400.0)
     assert late["joint_ohm"] == 0.01
     assert relay.truth(19.9 * 86400.0)["running"]
@@ -113,9 +122,26 @@ def test_the_documented_example_is_a_scenario(tmp_path: Path) -> None:
     assert developing.truth(900.0)["mu_f"] == pytest.approx(8.4 / (0.1 / 0.08**2 + 8.4 / 0.08))
 
 
+def test_a_fault_in_a_coil_grows_by_shares_of_the_coil(tmp_path: Path) -> None:
+    fault = """[motor.fault]
+phase = "c"
+coil = 7
+path_ratio = 1.0
+timeline = [{ at_s = 0, coil_share = 0 }, { at_s = 100, coil_share = 0.5 }]
+"""
+    for branches in (1, 2):
+        text = MINIMAL + LAP + f"branches = {branches}\n" + fault
+        relay = read_scenario(write(tmp_path, text))["R1"]
+        assert relay.plant.fault_at(0.0) is None
+        truth = relay.truth(100.0)
+        assert truth["mu_f"] == pytest.approx(0.5 / 12 / 2)
+        assert (truth["theta_f"], truth["coil"], truth["coil_axis_deg"]) == (2, 7, -20.0)
+        assert relay.plant.circuit(100.0).loops > relay.plant.circuit(0.0).loops
+
+
 def test_every_field_is_documented() -> None:
     page = (REPOSITORY / "docs" / "reference" / "scenario.md").read_text(encoding="utf-8")
-    modules = (moments, motor_tables, supply_tables, tables)
+    modules = (fault_tables, feeder_tables, moments, motor_tables, supply_tables, tables)
     sections = [found for module in modules for found in vars(module).values() if _is_table(found)]
     assert len(sections) > 20
     fields = {name for section in sections for name in section.model_fields}
@@ -135,10 +161,12 @@ def test_the_demo_plant_is_what_it_says() -> None:
         "A1_SEL710": (0.0, None),
         "A2_SEL710": (0.05, 1),
         "A3_SEL710": (0.0, None),
-        "B1_SEL710": (0.02, 2),
+        "B1_SEL710": (0.04, 2),
         "B2_SEL710": (0.1, 0),
         "B3_SEL710": (0.0, None),
     }
+    axes = {name: truth["coil_axis_deg"] for name, truth in truths.items() if "coil" in truth}
+    assert axes == {"A2_SEL710": 20.0, "B1_SEL710": 7.5, "B2_SEL710": 0.0}
     assert truths["A1_SEL710"]["load_level"] == 0.8
     assert truths["B3_SEL710"]["load_level"] == 0.1
     assert scenarios["A3_SEL710"].plant.supply.unbalance == 0.03
@@ -174,7 +202,7 @@ def test_a_cage_breaks_over_time_and_the_truth_tells(tmp_path: Path) -> None:
     assert late["eccentricity"] == {"static": 0.2, "dynamic": 0.1}
     assert late["pulsations"] == [{"depth": 0.1, "per_turn": 2.0}, {"depth": 0.02, "twice_slip": True}]
     assert relay.plant.cage.lost_conductance(2 / 32).nonzero()[0].tolist() == [3, 9]
-    slots = MINIMAL.replace("pole_pairs = 2", "pole_pairs = 2\nrotor_slots = 44")
+    slots = MINIMAL.replace("pole_pairs = 2", "pole_pairs = 2\nrotor_bars = 44")
     assert read_scenario(write(tmp_path, slots))["R1"].truth(0.0)["bars"] == 44
 
 
@@ -263,6 +291,28 @@ def test_the_reference_motor_needs_no_file() -> None:
             "[motor R1] fault",
             "either resistance_ohm or path_ratio",
         ),
+        (
+            MINIMAL + '[motor.fault]\nphase = "a"\ncoil = 1\nlevel = 0.1',
+            "[motor R1] fault",
+            "coil and coil_share belong together",
+        ),
+        (
+            MINIMAL + '[motor.fault]\nphase = "a"\ntimeline = [{at_s=5, coil_share=0.1}]',
+            "[motor R1] fault",
+            "coil and coil_share belong together",
+        ),
+        (
+            MINIMAL + '[motor.fault]\nphase = "a"\ncoil = 1\ncoil_share = 0.1',
+            "[motor R1] fault.coil",
+            "a coil of the phase",
+        ),
+        (
+            MINIMAL + LAP + '[motor.fault]\nphase = "a"\ncoil = 13\ncoil_share = 0.1',
+            "[motor R1] fault.coil",
+            "a coil of the phase",
+        ),
+        (MINIMAL + LAP.replace("36", "40"), "[motor R1] winding", "one that the motor can have"),
+        (MINIMAL + LAP.replace("lap", "wave"), "[motor R1] winding.kind", "'lap' or 'concentric'"),
         (MINIMAL + '[motor.joint]\nphase = "a"', "[motor R1] joint", "either resistance_ohm or timeline"),
         (
             MINIMAL + '[motor.sensors]\nchanges = [{ channel = "VA", at_days = 1 }]',

@@ -36,7 +36,8 @@ def operate(served: Simulated, inst_reference: str) -> None:
 
 def table(content: str) -> list[dict[str, str]]:
     """Rows of a Compressed ASCII report by label; a wrong checksum raises."""
-    lines = list(rows(Path("report"), content.encode("ascii"), 0, Repairs(lenient=False)))
+    written = content.encode("ascii")
+    lines = list(rows(Path("report"), written, 0, len(written), Repairs(lenient=False)))
     labels = lines[2].fields
     return [dict(zip(labels, line.fields, strict=True)) for line in lines[3:]]
 

@@ -45,6 +45,41 @@ def test_the_swig_module_is_never_imported() -> None:
     assert subprocess.run([sys.executable, "-c", script], check=False).returncode == 0
 
 
+def test_the_wheel_tells_its_version_of_mbed_tls() -> None:
+    """Who pins another wheel writes its version here and in docs/how-to/security.md."""
+    assert mms.mbed_tls_version() == "3.6.0"
+    page = Path(mms.__file__).parents[1] / "docs" / "how-to" / "security.md"
+    assert "Mbed TLS 3.6.0" in page.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("content", "version"),
+    [
+        (b"/build/mbedtls-3.6.8/library/ssl_msg.c\0/build/mbedtls-3.6.8/library/ssl_tls.c", "3.6.8"),
+        (b"/build/mbedtls-3.6.8/library/ssl_msg.c\0/build/mbedtls-2.28.0/library/ssl_tls.c", None),
+        (b"no path of a source file", None),
+    ],
+)
+def test_a_library_that_cannot_be_asked_is_read(
+    tmp_path: Path, content: bytes, version: str | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "libiec61850.so"
+    file.write_bytes(content)
+    monkeypatch.setattr(library, "library", lambda: object())
+    monkeypatch.setattr(library, "shared_library", lambda: file)
+    assert library.mbed_tls_version() == version
+
+
+def test_a_library_that_can_be_asked_is_asked(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Asked:
+        @staticmethod
+        def mbedtls_version_get_number() -> int:
+            return 0x0306_0C00
+
+    monkeypatch.setattr(library, "library", Asked)
+    assert library.mbed_tls_version() == "3.6.12"
+
+
 def test_a_missing_wheel_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(importlib.util, "find_spec", lambda _name: None)
     with pytest.raises(ImportError, match="pyiec61850-ng is not installed"):

@@ -29,7 +29,7 @@ from mms import (
 from mms.binding.library import library
 from mms.security import credential_files
 from mms.security.credential_files import describe_certificate
-from mms.security.tls import TlsContext
+from mms.security.tls import TlsContext, unverified_context
 from testing.ports import LOOPBACK
 from testing.relays.certificates import identity
 from testing.relays.pki import Pki
@@ -66,8 +66,9 @@ def reads(client: Client) -> bool:
 
 
 @pytest.mark.parametrize("version", TlsVersion)
-def test_each_version_of_tls_carries_mms(pki: Pki, relay: Server, version: TlsVersion) -> None:
-    with connect(relay, pki.of_client(only=version)) as client:
+def test_each_version_of_tls_carries_mms(pki: Pki, version: TlsVersion) -> None:
+    of_relay = pki.of_relay(version=version)
+    with start_relay(tls=of_relay) as relay, connect(relay, pki.of_client(version=version)) as client:
         assert reads(client)
 
 
@@ -106,18 +107,18 @@ def test_a_certificate_is_exchanged_with_both_pinned_for_a_while(pki: Pki) -> No
 
 @pytest.mark.parametrize("version", TlsVersion)
 @pytest.mark.parametrize("who", ["of the authority, not pinned", "of another authority"])
-def test_an_unknown_client_is_refused(pki: Pki, relay: Server, version: TlsVersion, who: str) -> None:
+def test_an_unknown_client_is_refused(pki: Pki, version: TlsVersion, who: str) -> None:
     other = pki.alien if "another" in who else pki.signed("unpinned", -A_DAY, A_DAY)
-    tls = replace(pki.of(other), minimum_version=version, maximum_version=version)
-    with pytest.raises(CertificateRefused, match=rf"127\.0\.0\.1:{relay.port}: connect: .*our certificate"):
-        connect(relay, tls)
-    with connect(relay, pki.of_client()) as client:
-        assert reads(client), "it goes on serving the others"
+    tls = replace(pki.of(other), version=version)
+    with start_relay(tls=pki.of_relay(version=version)) as relay:
+        refusal = rf"127\.0\.0\.1:{relay.port}: connect: .*our certificate"
+        with pytest.raises(CertificateRefused, match=refusal):
+            connect(relay, tls)
+        with connect(relay, pki.of_client(version=version)) as client:
+            assert reads(client), "it goes on serving the others"
 
 
-def test_a_refusal_that_comes_late_is_no_wrong_password(
-    pki: Pki, relay: Server, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_refusal_that_comes_late_is_no_wrong_password(pki: Pki, monkeypatch: pytest.MonkeyPatch) -> None:
     """With TLS 1.3 the library may not hear why the relay hung up: it fails to write, and says nothing."""
     on_event = TlsContext._on_event
 
@@ -128,27 +129,29 @@ def test_a_refusal_that_comes_late_is_no_wrong_password(
             on_event(self, parameter, level, code, message, connection)
 
     monkeypatch.setattr(TlsContext, "_on_event", deaf)
-    tls = replace(pki.of(pki.alien), minimum_version=TlsVersion.TLS_1_3)
-    with pytest.raises(CertificateRefused):
+    tls = replace(pki.of(pki.alien), version=TlsVersion.TLS_1_3)
+    with (
+        start_relay(tls=pki.of_relay(version=TlsVersion.TLS_1_3)) as relay,
+        pytest.raises(CertificateRefused),
+    ):
         Client.connect(LOOPBACK, relay.port, tls=tls, password="OTTER")  # noqa: S106
 
 
-@pytest.mark.parametrize("version", [ssl.TLSVersion.TLSv1_2, ssl.TLSVersion.TLSv1_3])
-def test_a_client_without_certificate_gets_no_answer(relay: Server, version: ssl.TLSVersion) -> None:
-    context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
-    context.check_hostname, context.verify_mode = False, ssl.CERT_NONE
-    context.minimum_version = context.maximum_version = version
+@pytest.mark.parametrize("version", TlsVersion)
+def test_a_client_without_certificate_gets_no_answer(pki: Pki, version: TlsVersion) -> None:
+    with start_relay(tls=pki.of_relay(version=version)) as relay:
+        context = unverified_context(version)
 
-    def ask() -> bytes:
-        with (
-            socket.create_connection((LOOPBACK, relay.port), 5) as plain,
-            context.wrap_socket(plain) as secured,
-        ):
-            secured.sendall(CONNECT_REQUEST)
-            return secured.recv(1)
+        def ask() -> bytes:
+            with (
+                socket.create_connection((LOOPBACK, relay.port), 5) as plain,
+                context.wrap_socket(plain) as secured,
+            ):
+                secured.sendall(CONNECT_REQUEST)
+                return secured.recv(1)
 
-    with pytest.raises(ssl.SSLError):
-        ask()
+        with pytest.raises(ssl.SSLError):
+            ask()
 
 
 def test_a_relay_with_another_certificate_is_not_trusted(pki: Pki, relay: Server) -> None:

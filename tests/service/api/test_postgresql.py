@@ -1,5 +1,6 @@
 """The API on PostgreSQL, where several writers are at work at once."""
 
+import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
@@ -26,7 +27,9 @@ def at_once(client: httpx.Client) -> Iterator[AtOnce]:
 
     def begin(post: Post) -> httpx.Response:
         together.wait(10)
-        return post()
+        while (answer := post()).status_code == httpx.codes.SERVICE_UNAVAILABLE:
+            time.sleep(float(answer.headers["Retry-After"]))  # as a client does whom a busy service asks to
+        return answer
 
     with ThreadPoolExecutor(CLIENTS) as pool:
         yield lambda post: list(pool.map(begin, [post] * CLIENTS, timeout=60))

@@ -24,6 +24,12 @@ def test_alive_and_ready(context: ApiContext) -> None:
         }
 
 
+def test_a_probe_that_wants_no_content_gets_none(context: ApiContext) -> None:
+    with serving(create_app(context), as_somebody=False) as client:
+        response = client.head("/healthz")
+    assert (response.status_code, response.content) == (200, b"")
+
+
 def test_what_is_not_ready_is_named(context: ApiContext) -> None:
     unreachable = Repository(create_engine("sqlite:////nowhere/at/all.sqlite"))
     readiness = {"collector": lambda: "ended with exit code 1", "jobs": lambda: None}

@@ -59,7 +59,7 @@ def test_errors_are_problem_documents(client: httpx.Client, method: str, path: s
     [
         ("PATCH", "/api/v1/motors/PUMP-A1/baseline", "GET, PUT, DELETE"),
         ("OPTIONS", "/api/v1/recordings", "GET, POST"),
-        ("POST", "/healthz", "GET"),
+        ("POST", "/healthz", "GET, HEAD"),
     ],
 )
 def test_allow_has_all_methods(client: httpx.Client, method: str, path: str, allowed: str) -> None:

@@ -73,7 +73,10 @@ def test_a_motor_has_so_many_queued_diagnoses(
 
 def test_a_motor_has_so_many_notes(client: httpx.Client) -> None:
     motor = "/api/v1/motors/PUMP-A1"
-    note, restart = {"text": "hums", "by": "A. Miller"}, {"reason": "tested", "by": "A. Miller"}
+    note, restart = (
+        {"text": "hums", "on_behalf_of": "A. Miller"},
+        {"reason": "tested", "on_behalf_of": "A. Miller"},
+    )
     kept = [client.post(f"{motor}/notes", json=note).json()["id"] for _ in range(2)]
     kept.append(client.post(f"{motor}/reference", json=restart).json()["id"])
     client.post(f"{motor}/notes/{kept[0]}/withdrawal", json=restart)
@@ -90,7 +93,10 @@ def test_no_number_of_notes_keeps_a_wrong_baseline_or_reference(
     client: httpx.Client, repository: Repository, store: RecordingStore
 ) -> None:
     motor = "/api/v1/motors/PUMP-A1"
-    note, restart = {"text": "hums", "by": "A. Miller"}, {"reason": "tested", "by": "A. Miller"}
+    note, restart = (
+        {"text": "hums", "on_behalf_of": "A. Miller"},
+        {"reason": "tested", "on_behalf_of": "A. Miller"},
+    )
     ids = [diagnosed(repository, store, b"%d" % number) for number in range(3)]
     for _ in range(3):
         assert client.post(f"{motor}/notes", json=note).status_code == 201
@@ -108,7 +114,10 @@ def test_what_baselines_and_references_note_counts(
     client: httpx.Client, repository: Repository, store: RecordingStore
 ) -> None:
     motor = "/api/v1/motors/PUMP-A1"
-    note, restart = {"text": "hums", "by": "A. Miller"}, {"reason": "tested", "by": "A. Miller"}
+    note, restart = (
+        {"text": "hums", "on_behalf_of": "A. Miller"},
+        {"reason": "tested", "on_behalf_of": "A. Miller"},
+    )
     ids = [diagnosed(repository, store, b"%d" % number) for number in range(3)]
     client.put(f"{motor}/baseline", json={"recording_ids": ids, **restart})
     client.delete(f"{motor}/baseline")

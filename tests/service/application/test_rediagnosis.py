@@ -20,6 +20,8 @@ from service.jobs.runner import JobRunner
 from service.jobs.worker import diagnose_recording, prepare_worker
 from service.storage.states import JobState
 from service.timing.backoff import Backoff
+from testing.relays.certificates import Identity
+from testing.relays.pki import Pki
 from testing.service.archive import Archive, make_archive
 from testing.service.s3_server import S3Server
 from testing.waiting import wait_until
@@ -126,8 +128,23 @@ def test_a_batch_that_is_killed_goes_on(archive: Archive) -> None:
 
 
 @contextmanager
-def cluster(directory: Path, port: int = 0) -> Iterator[tuple[str, "subprocess.Popen[str]"]]:
-    """A scheduler and its worker, as people start them; the address, and the scheduler's process."""
+def cluster(directory: Path, own: Identity | None = None) -> Iterator[tuple[str, "subprocess.Popen[str]"]]:
+    """A scheduler and its worker, as people start them; the address, and the scheduler's process.
+
+    own: their certificate, beside that of its authority; without it they speak in clear.
+    """
+    files: tuple[str, ...] = ()
+    if own is not None:
+        ca = own.certificate_file.with_name("authority.pem")
+        files = (
+            "--tls-ca-file",
+            str(ca),
+            "--tls-cert",
+            str(own.certificate_file),
+            "--tls-key",
+            str(own.key_file),
+        )
+    protocol = "tcp" if own is None else "tls"
     dask = (sys.executable, "-m", "dask")
     with ExitStack() as ending:
 
@@ -136,10 +153,21 @@ def cluster(directory: Path, port: int = 0) -> Iterator[tuple[str, "subprocess.P
             ending.callback(_end, process)
             return process
 
-        scheduler = begin("scheduler", "--host", "127.0.0.1", "--port", str(port), "--no-dashboard")
+        scheduler = begin(
+            "scheduler",
+            "--protocol",
+            protocol,
+            "--host",
+            "127.0.0.1",
+            "--port",
+            "0",
+            "--no-dashboard",
+            *files,
+        )
         assert scheduler.stderr is not None
-        address = next(found[0] for line in scheduler.stderr if (found := re.search(r"tcp://[\d.:]+", line)))
-        worker = begin("worker", address, "--nthreads", "1", "--host", "127.0.0.1", "--no-dashboard")
+        at = re.compile(rf"{protocol}://[\d.:]+")
+        address = next(found[0] for line in scheduler.stderr if (found := at.search(line)))
+        worker = begin("worker", address, "--nthreads", "1", "--host", "127.0.0.1", "--no-dashboard", *files)
         assert worker.stderr is not None
         assert any("Registered to" in line for line in worker.stderr)
         yield address, scheduler
@@ -169,6 +197,35 @@ def test_a_scheduler_that_dies_is_told_in_one_line_and_the_batch_goes_on(
     )
     with cluster(tmp_path) as (address, _):
         assert run(archive, "--scheduler", address, "--model", MODEL) == told(RECORDS - done, done)
+    assert archive.made() == [1] * RECORDS
+
+
+def _secured(archive: Archive, pki: Pki, own: Identity) -> None:
+    """Write the certificates for the cluster into the settings."""
+    table = {"ca": pki.authority.certificate_file, "certificate": own.certificate_file, "key": own.key_file}
+    lines = [f'{name} = "{file}"' for name, file in table.items()]
+    archive.config.write_text("\n".join([archive.config.read_text(), "[dask]", *lines, ""]))
+
+
+def test_a_cluster_is_used_over_tls_by_who_has_its_certificates(archive: Archive, tmp_path: Path) -> None:
+    folder = tmp_path / "certificates"
+    folder.mkdir()
+    pki = Pki.make(folder)
+    clear = archive.config.read_text()
+    with cluster(tmp_path, pki.relay) as (address, _):
+        assert address.startswith("tls://")
+        for own, said in (
+            (None, f"mcc: --scheduler: {address}: expected the table [dask] with ca, certificate and key"),
+            (pki.alien, f"mcc: --scheduler {address}: expected the address of a Dask scheduler that runs"),
+        ):
+            if own is not None:
+                _secured(archive, pki, own)
+            with start(archive, "--scheduler", address, "--model", MODEL) as process:
+                _, complained = process.communicate(timeout=PATIENCE_S)
+            assert (process.returncode, complained[: len(said)]) == (1, said)
+            archive.config.write_text(clear)
+        _secured(archive, pki, pki.client)
+        assert run(archive, "--scheduler", address, "--model", MODEL) == told(RECORDS, 0)
     assert archive.made() == [1] * RECORDS
 
 

@@ -18,6 +18,7 @@ from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from service.storage.records import Actor
 from testing.ports import free_port
+from testing.service.accounts import auditor
 from testing.service.plants import NOW_NS
 from testing.waiting import wait_until
 from tests.service.api.serving import serving
@@ -127,6 +128,7 @@ def test_the_api_says_how_far_it_is(repository: Repository, store: RecordingStor
     for audit, told in ((AuditSettings(), None), (AuditSettings(syslog=AuditSyslog(host="log")), 1)):
         settings = Settings(data_directory=tmp_path, audit=audit)
         with serving(create_app(ApiContext(settings, repository, store))) as client:
+            client.headers.update(auditor(repository))
             assert client.get("/api/v1/audit/head").json()["forwarded"] == told
 
 

@@ -6,10 +6,12 @@ import pytest
 from sqlalchemy import Engine, update
 from sqlalchemy.orm import Session
 
+from core.rotor.finding import RotorState
 from core.units import NANOSECONDS_PER_DAY
-from service.background.long_records import LongRecorder
+from service.background.long_records import MOST_TRIGGERS, LongRecorder
+from service.plant.series_rhythm import rhythm_of
 from service.storage import Repository
-from service.storage.models import RecordingRequestRow, RecordingRow
+from service.storage.models import RecordingRequestRow, RecordingRow, RotorFindingRow
 from service.storage.records import RecordingRequest, Sample
 from service.storage.states import LinkState, RecordingSource, RecordingState
 from testing.service.links import set_link_state
@@ -116,7 +118,7 @@ def test_motors_are_recorded_for_long_one_after_the_other_and_again_after_the_in
     assert [one.motor for one in asked(ready)] == [first.motor, second.motor, first.motor]
 
 
-def test_none_is_made_unless_it_is_set(ready: Repository) -> None:
+def test_none_is_made_where_the_interval_is_0_days(ready: Repository) -> None:
     run_steadily(ready, NOW_NS)
     recorder(ready, 0.0).request_due(NOW_NS)
     recorder(ready, 0.0, long_record_s=20.0).request_due(NOW_NS)
@@ -205,3 +207,47 @@ def test_two_services_ask_once(ready: Repository) -> None:
     first.request_due(NOW_NS)
     second.request_due(NOW_NS)
     assert len(asked(ready)) == 1
+
+
+def test_a_relay_with_records_too_short_is_not_asked_by_itself(ready: Repository, engine: Engine) -> None:
+    """In records of 0.5 s, 0.1 s of it before the trigger, 10 s are a series of 23."""
+    with Session(engine) as session:
+        short = update(RecordingRow).where(RecordingRow.motor == PUMP)
+        session.execute(short.values(duration_s=0.5, pre_trigger_s=0.1))
+        session.commit()
+    assert rhythm_of((0.5, 0.1), 10.0).triggers > MOST_TRIGGERS
+    assert rhythm_of((1.28, 0.4), 10.0).triggers <= MOST_TRIGGERS
+    run_steadily(ready, NOW_NS)
+    recorder(ready).request_due(NOW_NS)
+    assert [one.motor for one in asked(ready)] == [FAN]
+
+
+@pytest.mark.parametrize(("assessed_day", "due_day"), [(None, 30), (-5, 30), (28, 58)])
+def test_while_the_rotor_is_not_assessed_a_long_interval_is_a_month(
+    ready: Repository, engine: Engine, assessed_day: int | None, due_day: int
+) -> None:
+    own = recorder(ready, 0.0, long_record_days=90.0)
+    run_steadily(ready, NOW_NS)
+    own.request_due(NOW_NS)
+    (first,) = asked(ready)
+    joined(engine, first)
+    if assessed_day is not None:
+        with Session(engine) as session:
+            time_ns = NOW_NS + assessed_day * NANOSECONDS_PER_DAY
+            state = RotorState.HEALTHY
+            session.add(
+                RotorFindingRow(
+                    recording_id="E", motor=PUMP, time_ns=time_ns, state=state, condition=state,
+                    duration_s=10.0, reasons=(),
+                )
+            )  # fmt: skip
+            session.commit()
+    for day in range(1, 91):
+        now_ns = NOW_NS + day * NANOSECONDS_PER_DAY
+        set_link_state(ready, RELAYS[PUMP], LinkState.UP, None, now_ns=now_ns - HOUR_NS)
+        run_steadily(ready, now_ns, PUMP)
+        own.request_due(now_ns)
+        if len(asked(ready)) == 2:
+            assert day == due_day
+            return
+    raise AssertionError("no long record was asked for")

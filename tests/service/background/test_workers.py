@@ -9,6 +9,7 @@ import httpx
 import pytest
 from sqlalchemy import Engine
 
+from service.access.refusals import Refusals
 from service.api import ApiContext, create_app
 from service.application.parts import running
 from service.background.workers import Periods, background_workers
@@ -35,6 +36,7 @@ OFTEN = Periods(
     backups_s=0.01,
     joining_s=0.01,
     long_records_s=0.01,
+    refusals_s=0.01,
 )
 PARTS = (
     "schedules",
@@ -118,6 +120,7 @@ def serving_workers(repository: Repository, store: RecordingStore, directory: Pa
         gateway_problem=lambda: None,
         restart_delay_s=0.0,
         compute=compute_here,
+        refusals=Refusals(),
         periods=OFTEN,
     )
     readiness = {name: worker.problem for name, worker in workers.items()}
@@ -140,7 +143,7 @@ def test_work_that_fails_shows_in_the_readiness_and_is_tried_again(
             found: dict[str, str] = client.get("/readyz").json()["parts"]
             return found
 
-        others = dict.fromkeys({"database", *PARTS} - {part}, "ready")
+        others = dict.fromkeys({"database", "refusals", *PARTS} - {part}, "ready")
         faulty.part = part
         assert eventually(lambda: parts() == {**others, part: "RuntimeError: a bug"})
         assert client.get("/readyz").status_code == 503

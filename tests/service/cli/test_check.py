@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 import scl
+from mms import mbed_tls_version
 from service.cli.app import main
 from tests.service.plant.test_relay_tables import DEMO_MOTORS
 
@@ -38,11 +39,69 @@ def config(tmp_path: Path) -> Path:
 
 def test_a_plant_with_nothing_wrong(config: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["check", "--config", str(config)]) == 0
-    assert capsys.readouterr().out == "nothing is wrong: 1 motor, 1 relay, 1 site\n"
+    note, tls, summary = capsys.readouterr().out.splitlines()
+    assert tls == f"TLS to relays: Mbed TLS {mbed_tls_version()}"
+    assert summary == "nothing is wrong: 1 motor, 1 relay, 1 site"
+    assert note.startswith("note: stator winding not given: P-1: ")
     assert main(["check", "--config", str(config), "--json"]) == 0
     document = json.loads(capsys.readouterr().out)
-    assert document == {"problems": [], "warnings": [], "motors": ["P-1"], "relays": ["R-1"], "asked": []}
+    typical = {"kinds": ["concentric", "lap"], "layers": [1], "slots": [24, 36]}
+    assert document == {
+        "problems": [],
+        "warnings": [],
+        "motors": ["P-1"],
+        "windings": [{"motor": "P-1", "winding": None, "typical": typical}],
+        "relays": ["R-1"],
+        "mbed_tls": mbed_tls_version(),
+        "asked": [],
+    }
     assert sorted(file.name for file in config.parent.iterdir()) == ["mcc.toml", "motors.toml"]
+
+
+def test_a_winding_that_is_given_needs_no_note(config: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    motors = config.with_name("motors.toml")
+    given = '[motor.winding]\nkind = "lap"\nslots = 36\ncoil_pitch_slots = 8\n'
+    motors.write_text(MOTORS + given, encoding="utf-8")
+    assert main(["check", "--config", str(config)]) == 0
+    assert "note: " not in capsys.readouterr().out
+    assert main(["check", "--config", str(config), "--json"]) == 0
+    (found,) = json.loads(capsys.readouterr().out)["windings"]
+    assert found["winding"] == {"kind": "lap", "slots": 36, "layers": 2, "coil_pitch_slots": 8}
+    assert found["typical"] is None
+
+
+def test_a_winding_that_cannot_be_is_told_with_its_line(
+    config: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    motors = config.with_name("motors.toml")
+    motors.write_text(MOTORS + '[motor.winding]\nkind = "lap"\nslots = 35\n', encoding="utf-8")
+    assert main(["check", "--config", str(config)]) == 1
+    told = capsys.readouterr().out
+    line = motors.read_text(encoding="utf-8").splitlines().index("slots = 35") + 1
+    assert f"motors.toml: line {line}: motor P-1: [winding] slots: expected a multiple of 3" in told
+    assert "note: " not in told
+
+
+def test_motors_alike_share_a_note(config: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    seven = [
+        MOTORS.replace("R-1", f"R-{k}").replace("P-1", f"P-{k}").replace("port = 1", f"port = {k}")
+        for k in range(1, 8)
+    ]
+    config.with_name("motors.toml").write_text("".join(seven), encoding="utf-8")
+    assert main(["check", "--config", str(config)]) == 0
+    note, *_ = capsys.readouterr().out.splitlines()
+    assert note.startswith("note: stator winding not given: P-1, P-2, P-3, P-4, P-5 and 2 more: ")
+    assert note.endswith("; typical of the rating: concentric or lap, one layer, 24 or 36 slots")
+
+
+def test_a_library_that_does_not_tell_its_cryptography_is_said_so(
+    config: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("service.cli.plant.check.mbed_tls_version", lambda: None)
+    assert main(["check", "--config", str(config)]) == 0
+    assert "TLS to relays: Mbed TLS of unknown version\n" in capsys.readouterr().out
+    assert main(["check", "--config", str(config), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["mbed_tls"] is None
 
 
 def test_impedances_that_are_unusual_for_the_rating_are_warned_of(

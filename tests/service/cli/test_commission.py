@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from core.machines.motor_file.reader import read_motor, read_plate
+from core.machines.stator_winding import StatorWinding, WindingKind
 from core.recordings import comtrade, read
 from examples import make_start_record
 from service.cli import main
@@ -69,6 +70,26 @@ def test_two_starts_and_a_nameplate_become_a_motor_file(
     assert "HR_1.CFG, HR_2.CFG" in text
     assert "rotor_leakage_H = 0.0" in text
     assert "# fixed: 1 times the stator's" in text
+
+
+def test_the_winding_of_the_nameplate_file_is_kept(
+    tmp_path: Path, nameplate: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with nameplate.open("a", encoding="utf-8") as file:
+        file.write('[winding]\nkind = "lap"\nslots = 24\ncoil_pitch_slots = 5\n')
+    output = tmp_path / "out.toml"
+    words = [
+        "commission",
+        str(recorded(tmp_path, "HR_9")),
+        "--nameplate",
+        str(nameplate),
+        "--load",
+        "constant",
+    ]
+    assert main([*words, "--output", str(output), "--json"]) == 0
+    given = {"kind": "lap", "slots": 24, "layers": 2, "coil_pitch_slots": 5}
+    assert json.loads(capsys.readouterr().out)["winding"] == given
+    assert read_motor(output).winding == StatorWinding(WindingKind.LAP, 24, 2, 5)
 
 
 def test_a_person_reads_what_was_fixed(

@@ -12,7 +12,7 @@ import pytest
 from rich.console import Console
 
 from core.condition.events import EventKind
-from core.condition.forecast.forecast import Forecast
+from core.condition.forecast.outcome import Forecast
 from core.condition.kinds import Kind
 from core.condition.verdict.condition import Condition
 from core.time_stamps import rfc3339
@@ -24,6 +24,7 @@ from service.configuration.settings import Settings
 from service.recording_store.folder import FolderStore
 from service.storage import Repository
 from service.storage.states import LinkState
+from testing.service.accounts import TESTER
 from testing.service.conditions import DRIFTING, FAULT, HEALTHY, tell
 from testing.service.job_runner import RUNNER
 from testing.service.links import set_link_state
@@ -66,12 +67,12 @@ def test_the_motors_lead_with_their_condition(mcc: Mcc, repository: Repository) 
     shown = mcc("motors")
     row = next(line for line in shown.splitlines() if "PUMP-A1" in line)
     assert " ".join(row.split()) == (
-        "PUMP-A1 fault: shorted turns b 1.21 [0.90..2.25] 2025-10-06 2025-10-09 08:53 stale unknown"
+        "PUMP-A1 fault: shorted turns b 1.21 [0.90..2.25] 2025-10-06 2025-10-09 08:53 UTC stale unknown"
     )
     idle = next(line for line in shown.splitlines() if "FAN-A2" in line)
     assert idle.split() == ["FAN-A2", "unknown", "-", "-", "-", "unknown"]
     listed = json.loads(mcc("motors", "--json"))["motors"]
-    assert listed[1]["health"]["condition"] == {**FAULT.as_dict(), "stale": True}
+    assert listed[1]["health"]["condition"].items() >= {**FAULT.as_dict(), "stale": True}.items()
 
 
 @pytest.mark.parametrize("condition", [FAULT, DRIFTING, HEALTHY])
@@ -88,7 +89,7 @@ def test_80_columns_hold_the_list_of_motors(
     lines = console.file.getvalue().splitlines()
     assert max(len(line.rstrip()) for line in lines) <= 80
     shown = " ".join(lines)
-    for words in ("COMPRESSOR-A1", str(condition.state), "08:53", "stale", "quarantined"):
+    for words in ("COMPRESSOR-A1", str(condition.state), "08:53 UTC", "stale", "no room for: link"):
         assert words in shown
     assert condition.mu_f_ci95 is not None
     assert f"..{100 * condition.mu_f_ci95[1]:.2f}]" in shown
@@ -112,7 +113,7 @@ def test_health_says_what_to_do_then_why_then_what_the_latest_recording_says(
         "change of the level 1.20 % [0.90..1.50]",
         "growth 0.04 % a day; 2.00 % in about 20 days, in eight of ten cases 12 to 41",
         "why shorted turns in phase b: 1.20 %",
-        "reference learnt from 64 records; a step of 0.45 % would be seen within ten records",
+        "reference learnt from 64 records; detection limit 0.45 % within ten records",
         "as of 2025-10-09 08:53:20 UTC; stale",
         "latest verdict fault",
         "equivalent fault level 5.00 % [4.60..5.40]",
@@ -122,7 +123,7 @@ def test_health_says_what_to_do_then_why_then_what_the_latest_recording_says(
 
 
 def test_health_tells_the_rotor(mcc: Mcc, repository: Repository, tmp_path: Path) -> None:
-    assert "rotor not told" in unframed(mcc("health", "PUMP-A1"))
+    assert "rotor not assessed" in unframed(mcc("health", "PUMP-A1"))
     recorded = ExaminedRecordings(repository, FolderStore(tmp_path / "recordings"))
     for _ in range(2):
         recorded.add(BROKEN_ROTOR)
@@ -188,9 +189,10 @@ def test_the_history_of_a_condition_tells_what_changed_it(mcc: Mcc, repository: 
     tell(repository, FAULT, now_ns=NOW_NS + 1)
     lines = [" ".join(line.split()) for line in mcc("condition", "PUMP-A1", "--history").splitlines()]
     assert lines[-3:-1] == [
-        "2025-10-09 08:53:20 UTC fault: shorted turns b 1.21 % [0.90..2.25] maintenance: new bearing (ann)",
+        "2025-10-09 08:53:20 UTC fault: shorted turns b 1.21 % [0.90..2.25]"
+        " maintenance: new bearing (statorwatch, on behalf of ann)",
         "2025-10-09 08:53:20 UTC watch: voltage channel or shorted turns c 0.04 % [0.00..1.20]"
-        " maintenance: new bearing (ann)",
+        " maintenance: new bearing (statorwatch, on behalf of ann)",
     ]
     found = json.loads(mcc("condition", "PUMP-A1", "--history", "--json"))
     assert [change["state"] for change in found["changes"]] == ["fault", "watch"]
@@ -215,7 +217,7 @@ def test_a_note_that_waits_for_a_record_is_warned_of(
 ) -> None:
     tell(repository, HEALTHY)
     when, url = rfc3339(NOW_NS + hours * HOUR_NS), str(client.base_url)
-    words = ["note", "PUMP-A1", "terminals tightened", "--by", "Ann", "--url", url]
+    words = ["note", "PUMP-A1", "terminals tightened", "--on-behalf-of", "Ann", "--url", url]
     assert main([*words, "--kind", kind, "--time", when]) == 0
     assert ("PUMP-A1 has no record after that" in capsys.readouterr().err) == warned
 
@@ -223,20 +225,34 @@ def test_a_note_that_waits_for_a_record_is_warned_of(
 def test_notes_are_taken_and_shown(mcc: Mcc, repository: Repository) -> None:
     when = "2025-10-09T08:00:00Z"
     told = mcc(
-        "note", "PUMP-A1", "new winding\nby Miller", "--kind", "rewound", "--time", when, "--by", "Ann"
+        "note",
+        "PUMP-A1",
+        "new winding\nby Miller",
+        "--kind",
+        "rewound",
+        "--time",
+        when,
+        "--on-behalf-of",
+        "Ann",
     )
     assert told == "PUMP-A1: rewound of 2025-10-09 08:00:00 UTC is noted\n"
     kept = json.loads(mcc("note", "PUMP-A1", "hums", "--json"))
     assert kept["kind"] == "note"
-    assert kept["by"], "who is logged in says it"
-    restarted = mcc("restart-reference", "PUMP-A1", "--reason", "surge test passed", "--by", "Ann")
+    assert (kept["by"], kept["on_behalf_of"]) == (TESTER, None), "who is logged in says it"
+    restarted = mcc("restart-reference", "PUMP-A1", "--reason", "surge test passed", "--on-behalf-of", "Ann")
     assert restarted.startswith("PUMP-A1: reference-restarted of 20")
     rows = [" ".join(line.split()) for line in mcc("notes", "PUMP-A1").splitlines()]
     (rewound,) = [row for row in rows if "rewound" in row]
-    assert rewound.startswith("2025-10-09 08:00:00 UTC rewound Ann new winding by Miller ")
-    withdrawn = mcc("withdraw-note", "PUMP-A1", rewound.split()[-1], "--reason", "not yet", "--by", "Bob")
+    assert rewound.startswith(
+        "2025-10-09 08:00:00 UTC rewound tester, on behalf of Ann new winding by Miller "
+    )
+    withdrawn = mcc(
+        "withdraw-note", "PUMP-A1", rewound.split()[-1], "--reason", "not yet", "--on-behalf-of", "Bob"
+    )
     assert withdrawn == "PUMP-A1: rewound of 2025-10-09 08:00:00 UTC is withdrawn\n"
-    assert "new winding by Miller (withdrawn by Bob: not yet)" in " ".join(mcc("notes", "PUMP-A1").split())
+    assert "new winding by Miller (withdrawn by tester, on behalf of Bob: not yet)" in " ".join(
+        mcc("notes", "PUMP-A1").split()
+    )
     notes = json.loads(mcc("notes", "PUMP-A1", "--json"))["notes"]
     assert [note["kind"] for note in notes] == ["reference-restarted", "note", "rewound"]
     assert notes[-1]["time"] == rfc3339(NOW_NS - 3200 * 10**9)

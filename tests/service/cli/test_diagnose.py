@@ -9,21 +9,23 @@ from typing import Any
 import numpy as np
 import pytest
 
-from core.classification.causes import Cause
 from core.classification.record import classify_record
 from core.condition.measuring.observing import Examined
+from core.diagnosis.causes import Cause
+from core.diagnosis.verdict import Hypothesis
 from core.machines.motor_file.writer import write_motor
 from core.machines.parameters import ParametersSource
 from core.quality.finding import QualityFinding
 from core.recordings import comtrade
 from core.rotor.swing_findings import EccentricityFinding, PulsationFinding
+from core.speed.telling import not_seen
 from service.cli import main
 from service.cli.output import results
 from service.cli.recordings.diagnose import _table
 from testing.machines.cause_records import CauseCase
 from testing.machines.motors import MEDIUM, REFERENCE
 from testing.machines.phase_circuits import Fault, recording, running
-from testing.service.plants import undiagnosable
+from testing.service.plants import fault, undiagnosable
 from testing.service.rotor_and_supply import SHORT_RECORD
 
 CLIPPED = "IA reads its full scale in 12 samples"
@@ -46,14 +48,34 @@ def test_what_keeps_a_record_from_being_diagnosed_is_said_once(capsys: pytest.Ca
         None,
         EccentricityFinding.untold(refused),
         PulsationFinding.untold(refused),
+        not_seen(refused),
     )
-    answer = classify_record(examined, REFERENCE)
+    answer = classify_record(examined)
     results().print(_table(Path("HR_1.CFG"), Path("motor.toml"), ParametersSource.GIVEN, examined, answer))
     shown = capsys.readouterr().out
     assert shown.count(CLIPPED) == 1
     assert "motor.toml" in shown
     (passed,) = [line for line in shown.splitlines() if "checks passed" in line]
     assert passed.split()[-2] == "1"
+
+
+@pytest.mark.parametrize(
+    ("probabilities", "words"),
+    [((0.01, 0.97, 0.02), "b"), ((0.717, 0.003, 0.28), "a (72 %) or c (28 %)"), (None, None)],
+)
+def test_the_phase_is_told_alone_or_with_the_other_likely_one(
+    capsys: pytest.CaptureFixture[str], probabilities: tuple[float, float, float] | None, words: str | None
+) -> None:
+    turns = Hypothesis(Cause.SHORTED_TURNS, 0.99, 30.0, "equivalent level 5.1%")
+    diagnosis = replace(fault(), theta_f=None, phase_probabilities=probabilities, hypotheses=(turns,))
+    refused = EccentricityFinding.untold("too short"), PulsationFinding.untold("too short")
+    speed = not_seen("too short")
+    examined = Examined(diagnosis, None, SHORT_RECORD, None, *refused, speed)
+    answer = classify_record(examined)
+    results().print(_table(Path("HR_1.CFG"), Path("motor.toml"), ParametersSource.GIVEN, examined, answer))
+    lines = capsys.readouterr().out.splitlines()
+    told = [line.split("│")[2].strip() for line in lines if line.startswith("│ phase ")]
+    assert told == ([] if words is None else [words])
 
 
 @pytest.fixture
@@ -80,7 +102,7 @@ def test_healthy_recordings_take_off_what_the_relay_makes_up(
 ) -> None:
     healthy = [pump(f"OK{k}", load_level) for k, load_level in enumerate((0.3, 0.5, 0.7, 0.9))]
     baseline = [word for path in healthy[:3] for word in ("--baseline", str(path))]
-    faulty = pump("ILL", 0.6, fault=Fault(0.015, 1))
+    faulty = pump("ILL", 0.6, fault=Fault(0.04, 1))
 
     def diagnosed(path: Path, *options: str) -> dict[str, Any]:
         assert main(["diagnose", str(path), "--json", *options]) == 0
@@ -88,13 +110,15 @@ def test_healthy_recordings_take_off_what_the_relay_makes_up(
         return found
 
     alone, relative = diagnosed(faulty), diagnosed(faulty, *baseline)
-    assert abs(alone["mu_f"] - 0.015) > 0.002
-    assert relative["mu_f"] == pytest.approx(0.015, abs=0.001)
+    assert relative["mu_f"] == pytest.approx(0.04, rel=0.1)
+    assert relative["mu_f_ci95"][0] < 0.04 < relative["mu_f_ci95"][1]
+    assert np.diff(relative["mu_f_ci95"]) < 0.9 * np.diff(alone["mu_f_ci95"])
     assert (relative["verdict"], relative["phase"]) == ("fault", "b")
     assert "relative to a baseline of 3 healthy recordings" in relative["reasons"]
-    assert diagnosed(healthy[3])["mu_f"] > 0.002
-    assert diagnosed(healthy[3], *baseline)["verdict"] == "healthy"
-    assert relative["detection_limit"] < 0.7 * alone["detection_limit"]
+    sound = diagnosed(healthy[3], *baseline)
+    assert sound["verdict"] == "healthy"
+    assert sound["mu_f"] < 0.5 * diagnosed(healthy[3])["mu_f"]
+    assert relative["detection_limit"] < alone["detection_limit"]
 
 
 def test_two_recordings_are_no_baseline(
@@ -167,10 +191,17 @@ def test_rotor_and_supply_are_told_beside_the_stator(
     }  # fmt: skip
     assert found["rotor"]["state"] == "healthy"
     assert found["rotor"]["severity_dB"] < found["rotor"]["detection_limit_dB"] < -40.0
+    assert set(found["speed"]) == {
+        "state", "source", "speed_rpm", "speed_rpm_ci95", "slip", "model_speed_rpm", "rotor_bars", "margin",
+        "alternatives", "reasons",
+    }  # fmt: skip
+    assert (found["speed"]["state"], found["speed"]["source"]) == ("not-seen", "model")
+    assert found["speed"]["speed_rpm"] == pytest.approx(found["speed_rpm"])
     assert found["supply"]["line_voltages_V"] == pytest.approx([380.0] * 3, rel=0.01)
     assert found["supply"]["frequency_hz"] == pytest.approx(50.0, abs=0.01)
 
     assert main(["diagnose", str(record)]) == 0
     shown = capsys.readouterr().out
-    assert "would be seen" in shown
+    assert "detection limit" in shown
+    assert "by the model" in shown
     assert "unbalance" in shown

@@ -10,7 +10,7 @@ import pytest
 
 from core.condition.following.follower import Follower
 from core.condition.measuring.observing import observe
-from core.condition.verdict.condition import condition_of
+from core.condition.verdict.judging import condition_of
 from core.machines.motor_file.reader import read_motor
 from core.machines.motor_file.writer import write_motor
 from core.recordings import comtrade, read
@@ -326,3 +326,35 @@ def test_names_and_reasons_cannot_play_with_the_terminal(
     shown = capsys.readouterr().out
     assert not {"\x1b", "\x07"} & set(shown)
     assert "unknown" in shown
+
+
+def test_one_event_in_several_formats_counts_once_in_its_finest(
+    few: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    before = followed(capsys, few, str(few))
+    event = read(few / "R0001.CFG")
+    comtrade.write(few / "OSCA.CFG", event, data_format="ASCII", revision=2013)
+    comtrade.write(few / "OSC32F.CFG", event, data_format="FLOAT32", revision=2013)
+    comtrade.write(few / "WHOLE.CFF", event, data_format="FLOAT32", revision=2013)
+    document = followed(capsys, few, str(few))
+    assert [one["record"].rpartition("/")[2] for one in document["history"]] == [
+        "R0000.CFG",
+        "OSC32F.CFG",
+        "R0002.CFG",
+    ]
+    reasons = {one["record"].rpartition("/")[2]: one["reason"] for one in document["skipped"]}
+    assert set(reasons) == {"R0001.CFG", "OSCA.CFG", "WHOLE.CFF"}
+    assert all("OSC32F.CFG: the same event" in reason for reason in reasons.values())
+    assert document["reference"]["records"] == before["reference"]["records"]
+    assert document["mu_f"] == pytest.approx(before["mu_f"], abs=1e-4)
+
+
+def test_records_of_one_time_that_differ_are_two_events(
+    few: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    event = read(few / "R0001.CFG")
+    other = replace(event, samples=1.01 * event.samples)
+    comtrade.write(few / "R0009.CFG", other, data_format="FLOAT32", revision=2013)
+    document = followed(capsys, few, str(few))
+    assert len(document["history"]) == 4
+    assert document["skipped"] == []

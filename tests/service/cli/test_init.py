@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 import scl
+from core.machines.stator_winding import StatorWinding, WindingKind
 from scl import Address
 from service.cli.app import main
 from service.configuration.settings import Settings
@@ -62,6 +63,19 @@ def test_from_an_scd(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert main(["check", "--config", str(plant / "mcc.toml")]) == 0
     read = read_plant(Settings.load(plant / "mcc.toml"))
     assert [motor.name for motor in read.motors][:2] == ["PUMP-A1", "FAN-A2"]
+
+
+def test_the_winding_may_be_filled_in_as_well(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    plant = tmp_path / "plant"
+    initialise(capsys, plant)
+    motors = plant / "motors.toml"
+    fill_in(motors)
+    text = motors.read_text(encoding="utf-8")
+    for key in (r"\[motor.winding\]", "kind", "slots", "layers", "coil_pitch_slots"):
+        text = re.sub(rf"^# ({key})", r"\1", text, flags=re.MULTILINE)
+    motors.write_text(text, encoding="utf-8")
+    (motor,) = read_plant(Settings.load(plant / "mcc.toml")).motors
+    assert motor.motor.winding == StatorWinding(WindingKind.LAP, 36, 2, 8)
 
 
 def test_from_cids(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -193,7 +207,7 @@ def test_nothing_is_written_over(tmp_path: Path, capsys: pytest.CaptureFixture[s
         (["missing.cid"], 1, "missing.cid"),
         (["10.0.0.300"], 2, "expected a file, or an address such as"),
         (["10.0.0.1:99999"], 2, "expected a file, or an address such as"),
-        (["10.0.0.1", str(scl.SEL710_ICD)], 2, "expected SCL files, or addresses of relays, found both"),
+        (["10.0.0.1", str(scl.SEL710_ICD)], 2, "or addresses of relays, found several kinds"),
     ],
 )
 def test_sources_that_cannot_be_used(

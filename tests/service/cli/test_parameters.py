@@ -2,6 +2,7 @@
 
 import json
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -9,8 +10,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from core.machines.motor_file.reader import read_motor, read_plate
 from core.machines.motor_file.writer import write_motor
-from core.machines.parameters import ChannelNames
+from core.machines.parameters import ChannelNames, ParametersSource
+from core.machines.stator_winding import StatorWinding, WindingKind
 from service.cli import main
 from testing.machines.motors import LARGE, REFERENCE
 
@@ -214,3 +217,69 @@ SUPPRESSED = [HealthCheck.function_scoped_fixture, HealthCheck.too_slow]
 def test_no_figures_end_in_a_traceback(delta: Path, figures: dict[str, float], options: list[str]) -> None:
     words = [f"{name}={value!r}" for name, value in figures.items()]
     assert main(["parameters", "--nameplate", str(delta), *words, *options]) in (0, 2)
+
+
+def test_a_winding_is_written_beside_the_parameters(plate: Path, tmp_path: Path) -> None:
+    sheet = ["--winding", "lap", "--slots", "36", "--coil-pitch", "8"]
+    output = tmp_path / "PUMP.toml"
+    words = ["parameters", "--nameplate", str(plate), *IMPEDANCES, *sheet, "--output", str(output)]
+    assert main(words) == 0
+    assert read_motor(output).winding == StatorWinding(WindingKind.LAP, 36, 2, 8)
+    assert read_motor(output).parameters_source is ParametersSource.DATA_SHEET
+
+
+def test_a_winding_alone_leaves_the_parameters_as_they_are(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    intervals = {"inertia_kgm2": (0.02, 0.03)}
+    plate = write_motor(tmp_path / "plate.toml", REFERENCE, intervals=intervals)
+    found = document(["--nameplate", str(plate), "--winding", "concentric", "--slots", "24"], capsys)
+    assert found["winding"] == {"kind": "concentric", "slots": 24, "layers": 2, "coil_pitch_slots": None}
+    assert found["parameters"]["inertia_kgm2"]["ci95"] == [0.02, 0.03]
+    assert found["parameters"]["stator_leakage_H"] == {"value": 0.0328, "ci95": None}
+    output = tmp_path / "PUMP.toml"
+    words = ["--nameplate", str(plate), "--winding", "concentric", "--slots", "24", "--layers", "1"]
+    assert main(["parameters", *words, "--output", str(output)]) == 0
+    assert "stator winding: concentric, 24 slots, one layer" in capsys.readouterr().out
+    before, after = read_plate(plate), read_plate(output)
+    assert after.winding == StatorWinding(WindingKind.CONCENTRIC, 24, 1)
+    assert (after.parameters, after.source, after.intervals) == (
+        before.parameters,
+        before.source,
+        before.intervals,
+    )
+
+
+def test_a_winding_of_the_file_is_kept_and_one_figure_of_it_changed(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    winding = StatorWinding(WindingKind.LAP, 36, 2, 8)
+    plate = write_motor(tmp_path / "plate.toml", replace(REFERENCE, winding=winding))
+    assert document(["--nameplate", str(plate), *IMPEDANCES], capsys)["winding"] == {
+        "kind": "lap",
+        "slots": 36,
+        "layers": 2,
+        "coil_pitch_slots": 8,
+    }
+    pitch = document(["--nameplate", str(plate), "--coil-pitch", "7"], capsys)["winding"]["coil_pitch_slots"]
+    assert pitch == 7
+    other = document(["--nameplate", str(plate), "--slots", "48"], capsys)["winding"]
+    assert (other["slots"], other["coil_pitch_slots"]) == (48, None)
+
+
+@pytest.mark.parametrize(
+    ("sheet", "words"),
+    [
+        (["--slots", "36"], "stator winding: expected --winding and --slots, found no --winding"),
+        (["--winding", "lap"], "found no --slots"),
+        (["--winding", "lap", "--slots", "35"], "--slots: expected a multiple of 3"),
+        (["--winding", "lap", "--slots", "36", "--coil-pitch", "40"], "--coil-pitch: expected 1 to 18"),
+        (["--winding", "wave", "--slots", "36"], "wave"),
+        (["--winding", "lap", "--slots", "27", "--layers", "1"], "--slots: expected a multiple of 6"),
+    ],
+)
+def test_a_winding_that_cannot_be_is_wrong_use(
+    plate: Path, sheet: list[str], words: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["parameters", "--nameplate", str(plate), *sheet]) == 2
+    assert words in capsys.readouterr().err

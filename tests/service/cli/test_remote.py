@@ -8,9 +8,12 @@ import pytest
 from fastapi import Request, Response
 from starlette.middleware.base import RequestResponseEndpoint
 
+from core.diagnosis.causes import Cause
+from core.diagnosis.verdict import Hypothesis
 from core.machines.parameters import ParametersSource
 from service.api import ApiContext, create_app
 from service.cli.app import main
+from service.cli.remote import verdict_line
 from service.configuration.settings import Settings
 from service.recording_store.folder import FolderStore
 from service.storage import Repository
@@ -81,7 +84,9 @@ def test_the_motors_are_asked_for_once(
         listed = json.loads(capsys.readouterr().out)["motors"]
         for one in listed:
             health = client.get(f"/api/v1/motors/{one['name']}/health").json()
-            assert one == {**client.get(f"/api/v1/motors/{one['name']}").json(), "health": health}
+            motor = client.get(f"/api/v1/motors/{one['name']}").json()
+            assert motor.pop("winding", None) is None  # of one motor alone, not of a list
+            assert one == {**motor, "health": health}
     assert [one["name"] for one in listed] == ["FAN-A2", "PUMP-A1"]
 
 
@@ -186,3 +191,18 @@ def test_a_trigger_without_a_verdict_says_what_is_not_ready(
         assert main(["trigger", "PUMP-A1", "--wait", "0.01", "--url", str(client.base_url)]) == 1
     told = " ".join(capsys.readouterr().err.split())
     assert "the service is not ready: jobs: 2 of 2 workers are loading; mcc recordings list" in told
+
+
+@pytest.mark.parametrize(
+    ("probabilities", "begins"),
+    [
+        ((0.717, 0.003, 0.28), "FAN-A2: fault in phase a (72 %) or c (28 %), 5.10 % ["),
+        (None, "FAN-A2: fault, 5.10 % ["),
+    ],
+)
+def test_a_phase_that_is_not_named_alone_is_told_with_the_other_one(
+    probabilities: tuple[float, float, float] | None, begins: str
+) -> None:
+    turns = Hypothesis(Cause.SHORTED_TURNS, 0.99, 30.0, "equivalent level 5.1%")
+    found = replace(fault(), theta_f=None, phase_probabilities=probabilities, hypotheses=(turns,))
+    assert verdict_line("FAN-A2", found.as_dict()).plain.startswith(begins)

@@ -89,3 +89,73 @@ def test_a_speed_too_near_the_synchronous_one_is_unsupported(
     found = told(capsys, str(path), "--speed-rpm", "1490", "--rate", "5000")
     assert (found["state"], found["lower_sideband_dB"]) == ("unsupported", None)
     assert "it takes" in found["reasons"][0]
+
+
+SECOND = np.arange(RATE_HZ)
+
+
+def table(path: Path, header: str, times: Any, current: Any) -> Path:
+    rows = (f"{t:.6f},{i:.5f}" for t, i in zip(times, current, strict=True))
+    path.write_text("\n".join((header, *rows)) + "\n", encoding="utf-8")
+    return path
+
+
+def healthy_current() -> Any:
+    return one_phase(LOAD.record(1.0, RATE_HZ, seed=3))
+
+
+@pytest.mark.parametrize(
+    ("header", "step"),
+    [("Time,Channel A\n(ms),(A)\n", 1e3), ("t (us),IA", 1e6), ("time_ms,IA", 1e3), ("time,IA", 1.0)],
+)
+def test_times_count_in_the_unit_that_the_file_names(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], header: str, step: float
+) -> None:
+    path = table(tmp_path / "scope.csv", header, SECOND * step / RATE_HZ, healthy_current())
+    found = told(capsys, str(path), *SPEED)
+    assert found["state"] == "healthy"
+    assert found["duration_s"] == pytest.approx(1.0, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("header", "times", "words", "said"),
+    [
+        ("n,IA", SECOND, (), ("--rate", "'n'")),
+        ("time,IA", SECOND / RATE_HZ, ("--rate", "49"), ("49 Hz", "50 Hz")),
+        ("time,IA", SECOND / RATE_HZ, ("--rate", "100"), ("100 Hz", "50 Hz")),
+        ("n,IA", SECOND, ("--rate", "5"), ("5 Hz", "50 Hz", "kHz")),
+        ("time,IA", SECOND / RATE_HZ, ("--rate", "4000"), ("5000 Hz", "4000 Hz")),
+        ("time,IA", SECOND * 1e3 / RATE_HZ, (), ("5 Hz", "50 Hz", "ms")),
+        ("time,IA", SECOND / 50.0, (), ("50 Hz", "rms values")),
+    ],
+)
+def test_a_rate_that_cannot_be_is_refused_with_both_figures(
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    header: str,
+    times: Any,
+    words: tuple[str, ...],
+    said: tuple[str, ...],
+) -> None:
+    path = table(tmp_path / "record.csv", header, times, healthy_current())
+    assert main(["rotor", str(path), *SPEED, *words, "--json"]) == 1
+    message = json.loads(capsys.readouterr().out)["error"]["message"]
+    assert all(figure in message for figure in said), message
+
+
+def test_rms_values_are_no_current(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    rms = 7.0 + 0.1 * np.sin(2.0 * np.pi * 4.0 * SECOND / RATE_HZ)
+    path = table(tmp_path / "rms.csv", "time,IA", SECOND / RATE_HZ, rms)
+    found = told(capsys, str(path), *SPEED)
+    assert found["state"] == "unsupported"
+    assert "rms values" in found["reasons"][0]
+
+
+def test_another_frequency_than_the_rated_one_is_no_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    wave = np.sin(2.0 * np.pi * 16.0 * SECOND / RATE_HZ)
+    path = table(tmp_path / "slow.csv", "time,IA", SECOND / RATE_HZ, wave)
+    found = told(capsys, str(path), *SPEED)
+    assert (found["state"], found["lower_sideband_dB"]) == ("unsupported", None)
+    assert "no line near 50 Hz" in found["reasons"][0]

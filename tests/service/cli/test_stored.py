@@ -154,8 +154,8 @@ def test_the_trend_of_the_rotor(mcc: Mcc, repository: Repository, store: Recordi
     broken = recorded.add(BROKEN_ROTOR, SUPPLY)
     words = ("trend", "PUMP-A1", "--quantity", "rotor_severity_dB")
     shown = " ".join(mcc(*words).split())
-    assert "rotor severity dB seen from dB rotor recording" in shown
-    assert " UTC - - not told " in shown
+    assert "rotor severity dB detection limit dB rotor recording" in shown
+    assert " UTC - - not assessed " in shown
     assert f"-29.0 [-31.0..-27.5] -52.0 fault {broken}" in shown
     first, second = json.loads(mcc(*words, "--json"))["points"]
     assert (first["value"], first["state"], first["reasons"]) == (
@@ -202,9 +202,14 @@ def test_the_trend_of_the_supply(
 @pytest.mark.parametrize(
     ("quantity", "heading", "shown", "value"),
     [
-        ("gap_permeance_ripple", "gap permeance ripple % seen from %", "5.25 [4.86..5.64] 0.75", 0.0525),
+        (
+            "gap_permeance_ripple",
+            "gap permeance ripple % detection limit %",
+            "5.25 [4.86..5.64] 0.75",
+            0.0525,
+        ),
         ("turn_load_torque", "turn load torque %", "0.10 [0.00..0.49]", 0.001),
-        ("swing_load_torque", "swing load torque % seen from %", "6.25 [5.96..6.54] 0.50", 0.0625),
+        ("swing_load_torque", "swing load torque % detection limit %", "6.25 [5.96..6.54] 0.50", 0.0625),
         ("swing_frequency_hz", "swing frequency Hz", "4.125", 4.125),
     ],
 )
@@ -307,7 +312,7 @@ def test_ids_stay_whole(mcc: Mcc, recorded: list[str], columns: str, monkeypatch
     """Other commands need them."""
     monkeypatch.setenv("COLUMNS", columns)
     mcc("baseline", "set", "PUMP-A1", *recorded[:3])
-    for words in (("trend", "PUMP-A1"), ("recordings",), ("recordings", "PUMP-A1")):
+    for words in (("recordings",), ("recordings", "PUMP-A1")):
         assert set(recorded) <= set(mcc(*words).split()), words
     assert set(recorded[:3]) <= set(mcc("baseline", "PUMP-A1").split())
     assert set(recorded) <= set(mcc("rediagnose", *recorded, "--wait", "0").split())

@@ -155,8 +155,10 @@ def test_a_load_that_no_motor_bears_is_not_healthy_but_a_ratio(
     )
     assert "current_ratio = 1 in" in found["reasons"][0]
     small = diagnosed(capsys, written(of(PUMP), "20,60,S", "3300,3300,P"), PUMP)
-    assert small["verdict"] == "undiagnosable"
-    assert "current_ratio = 1 in" in small["reasons"][0]
+    assert small["verdict"] == "watch"
+    # Capacitors behind the relay and less load look the same: both are named.
+    assert small["reasons"][1].startswith("capacitors of")
+    assert "current_ratio = 1 in" in small["reasons"][1]
 
 
 def test_secondary_values_of_a_high_voltage_are_no_motor_that_stands(

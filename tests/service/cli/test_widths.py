@@ -1,4 +1,4 @@
-"""Tables in a pipe fit 80 and 120 columns and what COLUMNS says, and nothing of them is cut off."""
+"""Tables in a pipe fit 80 and 120 columns and what COLUMNS says; a column left out is named."""
 
 import re
 from collections.abc import Iterator
@@ -63,7 +63,7 @@ def client(database_url: str, tmp_path: Path) -> Iterator[httpx.Client]:
     repository.raise_alarm(relays[0].name, AlarmKind.FILE_REFUSED, "X.CFG", REASON, now_ns=NOW_NS)
     tell(repository, replace(FAULT, motor=LONG))
     with serving(create_app(ApiContext(Settings(data_directory=tmp_path), repository, store))) as client:
-        client.post(f"/api/v1/motors/{LONG}/notes", json={"text": REASON, "by": "ann"})
+        client.post(f"/api/v1/motors/{LONG}/notes", json={"text": REASON, "on_behalf_of": "ann"})
         yield client
     engine.dispose()
 
@@ -85,7 +85,7 @@ def test_tables_fit_and_nothing_is_cut_off(
         shown = capsys.readouterr().out
         assert "…" not in shown, command
         assert max(map(len, tables(shown))) <= int(columns or 80), (command, shown)
-        if command[0] != "diagnose":  # which says how long it took
+        if command[0] != "diagnose" and "(no room for: " not in shown:  # which says how long it took
             assert characters(shown) == characters(whole), command
 
 

@@ -20,11 +20,11 @@ from testing.service.rotor_and_supply import (
 
 
 def test_a_rotor_is_told_with_what_would_be_seen() -> None:
-    assert rotor_words(BROKEN_ROTOR) == "fault, asymmetry -29.0 dB [-31.0..-27.5]; -52.0 dB would be seen"
+    assert rotor_words(BROKEN_ROTOR) == "fault, asymmetry -29.0 dB [-31.0..-27.5]; detection limit -52.0 dB"
     assert sideband_words(BROKEN_ROTOR) == (
         "-35.5 dB below, -41.0 dB above the supply's line, at a slip of 3.10 %"
     )
-    assert (rotor_words(SHORT_RECORD), sideband_words(SHORT_RECORD)) == ("not told", None)
+    assert (rotor_words(SHORT_RECORD), sideband_words(SHORT_RECORD)) == ("not assessed", None)
 
 
 def test_a_supply_is_told_with_its_derating() -> None:

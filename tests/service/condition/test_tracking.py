@@ -82,7 +82,7 @@ def test_another_ratio_raises_an_alarm_that_ends_with_the_reference(
     ]
     assert alarm.kind == "parameter-drift"
     assert "magnetising inductance +5" in alarm.reason
-    assert "ratio of a current or voltage transformer" in alarm.reason
+    assert "a CT or VT ratio changed" in alarm.reason
     assert alarm.advice is not None
     assert alarm.advice.startswith("Compare ratios and burdens")
 

@@ -9,7 +9,7 @@ from core.units import NANOSECONDS_PER_DAY
 from service.condition.staleness import Missing, missing
 from service.condition.wording import advice_now, cause, expected, finding, level_ahead, since
 from service.web.words import day, percent
-from testing.service.conditions import DRIFTING, FAULT, HEALTHY, entry_of
+from testing.service.conditions import DRIFTING, FAULT, HEALTHY, OPEN_PHASE, entry_of
 from testing.service.plants import NOW_NS
 
 DAY_NS = NANOSECONDS_PER_DAY
@@ -22,6 +22,18 @@ def test_an_open_finding_is_told_as_what_it_may_be() -> None:
     assert cause(alone) == "may be shorted turns, phase c"
     assert cause(replace(alone, candidates=(), phase=None)) == "a change that another record has to confirm"
     assert cause(entry_of(HEALTHY)) == ""
+
+
+def test_shorted_turns_in_no_sure_phase_have_the_likely_ones() -> None:
+    likely = "shorted turns in phase a (72 %) or c (28 %)"
+    assert cause(entry_of(OPEN_PHASE)) == likely
+    assert finding(entry_of(OPEN_PHASE), None, complete=True) == f"S{likely[1:]}"
+    drifting = replace(DRIFTING, phase=None, phase_probabilities=(0.72, 0.0, 0.28))
+    assert cause(entry_of(drifting)) == f"may be an error of a voltage channel or {likely}"
+    told = finding(entry_of(drifting), None, complete=True)
+    assert told == f"A change that may be an error of a voltage channel or {likely}"
+    joint = replace(OPEN_PHASE, kind=Kind.CONNECTION)
+    assert cause(entry_of(joint)) == "more resistance in a joint", "its phase would be another one's"
 
 
 def test_without_a_recent_record_the_last_finding_is_told_as_such() -> None:

@@ -127,8 +127,8 @@ def test_limits_of_transactions_are_shorter_than_the_lease() -> None:
 
 
 def test_a_password_in_the_url_is_not_shown() -> None:
-    settings = Settings(database_url="postgresql+psycopg://mcc:secret@db.example/mcc")
-    assert "secret" not in repr(settings)
+    settings = Settings(database_url="postgresql+psycopg://mcc:0penSesame@db.example/mcc")
+    assert "0penSesame" not in repr(settings)
 
 
 RELAY = """

@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 
 from core.diagnosis.verdict import Verdict
+from core.machines.parameters import ChannelNames
 from core.recordings import Channel, Quantity, Recording
 from core.recordings.comtrade.writer import write
+from core.recordings.tables.layout import TableScaling
 from core.starts.measuring import measure_start
 from core.time_stamps import nanoseconds
 from service.jobs.limits import JobLimits
@@ -53,11 +55,64 @@ def task(entry: Path, method: str = "hcpa") -> DiagnosisTask:
     return DiagnosisTask(LocalFile(entry), motor("PUMP-A1"), method, "split-winding")
 
 
+def faulty(folder: Path, **changes: str) -> Path:
+    """A record of no revision year, as some relays write all of theirs."""
+    entry = write(folder / "EVENT", recording(), revision=1999, data_format="BINARY")
+    text = entry.read_text()
+    for old, new in {",1999": ",0", **changes}.items():
+        assert old in text
+        text = text.replace(old, new)
+    entry.write_text(text, newline="")
+    return entry
+
+
+def test_a_relay_may_be_read_leniently_and_each_repair_is_kept(tmp_path: Path) -> None:
+    asked = task(faulty(tmp_path))
+    refused = diagnose_recording(asked)
+    assert isinstance(refused, Rejected)
+    assert "found '0'" in refused.reason
+    outcome = diagnose_recording(replace(asked, motor=replace(asked.motor, reads_leniently=True)))
+    assert isinstance(outcome, Diagnosed)
+    assert outcome.recorded_ns == NOW_NS + TRIGGER_INDEX * 250_000
+    repairs = [one for one in outcome.diagnosis.quality if one.message.startswith("repaired: ")]
+    assert [(one.name, one.passed) for one in repairs] == [("file", True)]
+    assert "the edition is told by the layout" in repairs[0].message
+
+
+def test_a_record_of_unknown_time_is_rejected_however_it_is_read(tmp_path: Path) -> None:
+    entry = faulty(tmp_path)
+    lines = entry.read_text().split("\n")
+    entry.write_text("\n".join("never" if "/" in line else line for line in lines), newline="")
+    asked = task(entry)
+    outcome = diagnose_recording(replace(asked, motor=replace(asked.motor, reads_leniently=True)))
+    assert isinstance(outcome, Rejected)
+    assert "expected a date and time in the file" in outcome.reason
+
+
 def test_a_record_is_diagnosed_as_of_its_trigger(tmp_path: Path) -> None:
     outcome = diagnose_recording(task(write(tmp_path / "EVENT", recording())))
     assert isinstance(outcome, Diagnosed)
     assert outcome.recorded_ns == NOW_NS + TRIGGER_INDEX * 250_000
     assert (outcome.diagnosis.method, outcome.diagnosis.model) == ("hcpa", "split-winding")
+
+
+def test_a_table_is_diagnosed_by_its_motors_columns(tmp_path: Path) -> None:
+    record = recording()
+    channels = ChannelNames(currents=("1", "2", "3"), phase_voltages=("4", "5", "6"))
+    scaling = TableScaling(sample_rate_hz=4000.0, current_scale=(0.1,) * 3, voltage_scale=(10.0,) * 3)
+    factors = np.repeat([0.1, 10.0], 3)[:, np.newaxis]
+    np.save(tmp_path / "PUMP_20260131T120000.NPY", record.samples / factors)
+    (tmp_path / "PUMP_20260131T120000.NPY.npy").rename(tmp_path / "PUMP_20260131T120000.NPY")
+    asked = task(tmp_path / "PUMP_20260131T120000.NPY")
+    outcome = diagnose_recording(
+        replace(asked, motor=replace(asked.motor, channels=channels, tables=scaling))
+    )
+    by_relay = diagnose_recording(task(write(tmp_path / "EVENT", record)))
+    assert isinstance(outcome, Diagnosed)
+    assert isinstance(by_relay, Diagnosed)
+    assert outcome.recorded_ns == nanoseconds("2026-01-31T12:00:00Z")
+    assert outcome.diagnosis.verdict is by_relay.diagnosis.verdict
+    assert isinstance(diagnose_recording(asked), Rejected), "without the motor's columns there is no rate"
 
 
 def test_a_start_is_measured(tmp_path: Path) -> None:
@@ -168,7 +223,7 @@ def test_what_the_baseline_shows_is_taken_off(tmp_path: Path) -> None:
         return written(tmp_path / name, waveforms(operation, noise=0.002, current_gains=gains, seed=seed))
 
     healthy = tuple(LocalFile(record(f"OK{k}", load_level)) for k, load_level in enumerate((0.3, 0.6, 0.9)))
-    alone = DiagnosisTask(LocalFile(record("NEW", 0.5)), REFERENCE, "hybrid", "split-winding")
+    alone = DiagnosisTask(LocalFile(record("NEW", 0.5)), REFERENCE, "evidence", "coil")
     outcomes = [diagnose_recording(one) for one in (alone, replace(alone, baseline=healthy))]
     apparent, relative = (one.diagnosis for one in outcomes if isinstance(one, Diagnosed))
     assert apparent.mu_f is not None

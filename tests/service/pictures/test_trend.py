@@ -44,7 +44,7 @@ def test_what_would_be_seen_and_what_happened_meanwhile() -> None:
     marks = [TrendMark(NOW_NS + day * DAY, "start") for day in (-1, 3, 4)]
     svg = trend_picture("PUMP-A1", points(10), detectable=0.004, marks=marks)
     words = [str(text.text) for text in elements(svg, "text")]
-    assert "seen from 0.4 %" in words
+    assert "detection limit 0.4 %" in words
     assert words.count("1") == words.count("2") == 1, "what happened before the first record is not shown"
     assert "3" not in words
     assert "Last 0.40 % on" in str(elements(svg, "title")[0].text)
@@ -55,7 +55,7 @@ def test_time_without_records_is_shown_and_a_level_far_above_is_not() -> None:
     words = [str(text.text) for text in elements(svg, "text")]
     assert "motor's limit 0.5 %" in words
     assert "next level 2 %" in words
-    assert not any("seen from" in word for word in words)
+    assert not any("detection limit" in word for word in words)
     assert max(float(one.get("cx", "0")) for one in elements(svg, "circle")) < 320
 
 

@@ -59,6 +59,24 @@ def cid(tmp_path: Path) -> Path:
     return path
 
 
+def test_a_relay_says_how_its_recordings_are_read(read: Callable[..., Plant]) -> None:
+    """The motor that it protects carries it to all that reads them."""
+    strict, lenient, said = (f'host = "10.0.0.{k}"' for k in (7, 8, 9))
+    plant = read(
+        *(motor(f"P-{k}", f'relay = "R-{k}"') for k in (1, 2, 3)),
+        relay("R-1", strict),
+        relay("R-2", lenient, 'reading = "lenient"'),
+        relay("R-3", said, 'reading = "strict"'),
+    )
+    assert {one.name: one.motor.reads_leniently for one in plant.motors} == {
+        "P-1": False,
+        "P-2": True,
+        "P-3": False,
+    }
+    with pytest.raises(PlantError, match=r'reading.*"strict" or "lenient".*kind'):
+        read(motor("P-1", 'relay = "R-1"'), relay("R-1", strict, 'reading = "kind"'))
+
+
 @pytest.mark.parametrize(("name", "domain"), [("R-1", "R_1"), ("3UF7", "R3UF7"), ("M.1", "M_1")])
 def test_a_relay_of_an_icd_may_have_a_name_that_no_ied_may_have(
     read: Callable[..., Plant], tmp_path: Path, name: str, domain: str
@@ -175,7 +193,7 @@ def test_an_scd_without_a_substation_section(read: Callable[..., Plant], tmp_pat
         (
             [motor("M1", 'relay = "R1"'), relay("R1", 'hosts = "h"')],
             "relay R1: hosts: expected one of name, scl, site, host, port, time_zone, manufacturer, type, "
-            "found an unknown key (did you mean host?)",
+            "reading, found an unknown key (did you mean host?)",
         ),
         (
             [motor("M1", 'relay = "R1"'), relay("R1", 'scl = "missing.cid"')],

@@ -46,7 +46,7 @@ def seeded(tmp_path_factory: pytest.TempPathFactory) -> Iterator[ReportSource]:
     faulty = replace(FAULT, motor=FAULTY, as_of_ns=UNTIL_NS - HOUR_NS, since_ns=since_ns)
     tell(repository, faulty, now_ns=UNTIL_NS - HOUR_NS)
     note = Event(NOW_NS + HOUR_NS, EventKind.NOTE, "bearings greased")
-    repository.add_event(FAULTY, note, by=SERVICE, told_by="ann", now_ns=UNTIL_NS)
+    repository.add_event(FAULTY, note, by=SERVICE, on_behalf_of="ann", now_ns=UNTIL_NS)
     for motor, condition, days in ((WATCHED, DRIFTING, 1), (WELL, HEALTHY, 1), (STALE, HEALTHY, 60)):
         last_ns = UNTIL_NS - days * NANOSECONDS_PER_DAY
         tell(repository, replace(condition, motor=motor, as_of_ns=last_ns), now_ns=last_ns)

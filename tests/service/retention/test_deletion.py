@@ -128,7 +128,9 @@ def test_what_is_in_use_is_not_deleted(repository: Repository, store: FolderStor
     repository.release_job(running.job.id, runner=RUNNER)
     for _ in ids:
         diagnose(repository)
-    repository.set_baseline(MOTOR, ids, reason="new winding", by=SERVICE, told_by="A. Fitter", now_ns=NOW_NS)
+    repository.set_baseline(
+        MOTOR, ids, reason="new winding", by=SERVICE, on_behalf_of="A. Fitter", now_ns=NOW_NS
+    )
     with pytest.raises(RecordingInUseError, match=r"part of the baseline of motor PUMP-A1; replace"):
         repository.delete_recording(ids[0], "x", now_ns=NOW_NS)
     repository.delete_baseline(MOTOR, by=SERVICE, now_ns=NOW_NS)

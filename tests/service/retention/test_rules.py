@@ -241,7 +241,7 @@ def test_the_command_shows_what_would_go_and_deletes_it(
     assert main(["retention", "--dry-run", *where]) == 0
     shown = capsys.readouterr().out
     assert "retention.healthy_days" in shown
-    assert "2025-10-09T08:53:20Z" in shown
+    assert "2025-10-09 08:53:20 UTC" in shown
     assert "not set, so all is kept: retention.watch_days" in shown
     assert len(left(repository)) == 3
     assert main(["retention", "--json", *where]) == 0

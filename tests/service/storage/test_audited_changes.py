@@ -92,7 +92,9 @@ def test_a_baseline_chosen_replaced_and_dropped(repository: Repository, store: R
         repository.finish_job(claimed.job.id, healthy(), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER)
         repository.leave_out(claimed.job.recording_id, "told nothing", "test")
     first, second = sorted(recordings[:3]), sorted(recordings[1:])
-    repository.set_baseline(MOTOR, first, by=ANNA, reason="new winding", told_by="B. Moore", now_ns=NOW_NS)
+    repository.set_baseline(
+        MOTOR, first, by=ANNA, reason="new winding", on_behalf_of="B. Moore", now_ns=NOW_NS
+    )
     repository.set_baseline(MOTOR, second, by=ANNA, now_ns=NOW_NS)
     repository.delete_baseline(MOTOR, by=ANNA, now_ns=NOW_NS)
     repository.delete_baseline(MOTOR, by=ANNA, now_ns=NOW_NS)  # there is none any more
@@ -103,28 +105,28 @@ def test_a_baseline_chosen_replaced_and_dropped(repository: Repository, store: R
         ("baseline-deleted", "motor", MOTOR),
     ]
     assert chosen[3] is None
-    assert chosen[4] == {"recordings": first, "reason": "new winding", "told_by": "B. Moore"}
+    assert chosen[4] == {"recordings": first, "reason": "new winding", "on_behalf_of": "B. Moore"}
     assert replaced[3] == chosen[4]
-    assert replaced[4] == {"recordings": second, "reason": None, "told_by": "anna"}
-    assert dropped[3:] == (replaced[4], {"reason": None, "told_by": None})
+    assert replaced[4] == {"recordings": second, "reason": None, "on_behalf_of": None}
+    assert dropped[3:] == (replaced[4], {"reason": None, "on_behalf_of": None})
 
 
 def test_notes_and_references(repository: Repository) -> None:
     event = Event(NOW_NS, EventKind.MAINTENANCE, "cleaned")
     note = repository.add_event(MOTOR, event, by=ANNA, now_ns=NOW_NS)
     repository.withdraw_event(
-        MOTOR, note.id, by=ANNA, told_by="B. Moore", reason="not this one", now_ns=NOW_NS
+        MOTOR, note.id, by=ANNA, on_behalf_of="B. Moore", reason="not this one", now_ns=NOW_NS
     )
     with pytest.raises(StateConflictError):
         repository.withdraw_event(MOTOR, note.id, by=ANNA, reason="again", now_ns=NOW_NS)
     restart = Event(NOW_NS, EventKind.REFERENCE_RESTARTED, "tested")
-    repository.add_event(MOTOR, restart, by=ANNA, told_by="B. Moore", now_ns=NOW_NS)
+    repository.add_event(MOTOR, restart, by=ANNA, on_behalf_of="B. Moore", now_ns=NOW_NS)
     added, withdrawn, restarted = (told(entry) for entry in entries(repository))
     assert added[0] == "note-added"
     assert isinstance(added[4], dict)
-    assert (added[4]["note"], added[4]["text"], added[4]["told_by"]) == (note.id, "cleaned", "anna")
+    assert (added[4]["note"], added[4]["text"], added[4]["on_behalf_of"]) == (note.id, "cleaned", None)
     assert withdrawn[0] == "note-withdrawn"
-    assert withdrawn[3:] == (added[4], {"reason": "not this one", "told_by": "B. Moore"})
+    assert withdrawn[3:] == (added[4], {"reason": "not this one", "on_behalf_of": "B. Moore"})
     assert restarted[0] == "reference-restarted"
 
 

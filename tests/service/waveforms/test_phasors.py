@@ -79,7 +79,7 @@ def test_the_spectrum_shows_a_swinging_load_at_twice_the_slip() -> None:
     swing = 1.0 + 0.02 * np.cos(2 * np.pi * 2 * slip * 50.0 * t)
     samples = np.vstack([record.samples[:3] * swing, record.samples[3:]])
     speed_rpm = 60.0 * 50.0 / REFERENCE.nameplate.pole_pairs * (1.0 - slip)
-    motor = replace(REFERENCE, nameplate=replace(REFERENCE.nameplate, rotor_slots=28))
+    motor = replace(REFERENCE, nameplate=replace(REFERENCE.nameplate, rotor_bars=28))
     found = spectrum_of(shown(replace(record, samples=samples), motor), 2000, speed_rpm=speed_rpm)
     assert found.slip == pytest.approx(slip, abs=1e-4)
     levels = {one.line.label: one.level_dB for one in found.lines}
@@ -96,6 +96,7 @@ def test_the_spectrum_shows_a_swinging_load_at_twice_the_slip() -> None:
 def test_a_short_recording_says_that_sidebands_cannot_be_told() -> None:
     found = spectrum_of(shown(recording(running(REFERENCE, 0.3))), 500, speed_rpm=1485.0)
     assert not found.tells_sidebands
+    assert {"(1−2s)f", "(1+2s)f"}.isdisjoint(one.line.label for one in found.lines), "the supply's leakage"
     assert found.seconds_for_sidebands == pytest.approx(4.0, rel=0.01)
     unknown = spectrum_of(shown(recording(running(REFERENCE, 0.3)), None), 500, speed_rpm=1485.0)
     assert unknown.slip is None

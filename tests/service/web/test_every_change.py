@@ -20,8 +20,7 @@ def _own(path: str) -> str:
 
 
 def _login(it: Prepared) -> httpx.Response:
-    assert it.login().is_success
-    form = {"name": ME, "password": PASSWORD}
+    form = {"name": it.person(), "password": PASSWORD}
     return httpx.post(f"{it.client.base_url}/login", data=form, trust_env=False, timeout=30)
 
 
@@ -30,10 +29,12 @@ def _logout(it: Prepared) -> httpx.Response:
 
 
 def _password(it: Prepared) -> httpx.Response:
-    assert it.login().is_success
     new = f"{PASSWORD} staple"
     form = {"old": PASSWORD, "new": new, "again": new}
-    return it.client.post("/account/password", data=form)
+    return it.client.post("/account/password", data=form, headers=it.bearer_of(it.person()))
+
+
+AGAIN = {"password": PASSWORD}
 
 
 FORMS: Changes = {
@@ -70,6 +71,26 @@ FORMS: Changes = {
         "quarantine-released",
     ),
     "POST /account/password": (_password, "password-set"),
+    "POST /account/totp": (
+        lambda it: it.in_session("/account/totp", data=AGAIN),
+        "second-factor-begun",
+    ),
+    "POST /account/totp/confirmation": (
+        lambda it: it.in_session("/account/totp/confirmation", code=True, data=AGAIN),
+        "second-factor-added",
+    ),
+    "POST /account/recovery-codes": (
+        lambda it: it.in_session("/account/recovery-codes", with_app=True, data=AGAIN),
+        "recovery-codes-made",
+    ),
+    "POST /account/second-factor/removal": (
+        lambda it: it.in_session("/account/second-factor/removal", with_app=True, data=AGAIN),
+        "second-factor-removed",
+    ),
+    "POST /people/{name}/second-factor/reset": (
+        lambda it: it.client.post(f"{_own(it.user())}/second-factor/reset"),
+        "second-factor-reset",
+    ),
     "POST /account/tokens": (
         lambda it: it.client.post("/account/tokens", data={"label": "a test"}),
         "token-added",
@@ -102,9 +123,13 @@ FORMS: Changes = {
         lambda it: it.client.post(f"{_own(it.user())}/deletion"),
         "user-deleted",
     ),
-    "POST /people/{name}/tokens": (
-        lambda it: it.client.post(f"{_own(it.user())}/tokens", data={"label": "a test"}),
-        "token-added",
+    "POST /account/tokens-end": (
+        lambda it: it.client.post("/account/tokens-end", headers=it.somebody()),
+        "tokens-revoked",
+    ),
+    "POST /people/{name}/tokens-end": (
+        lambda it: it.client.post(f"{_own(it.user_with_token())}/tokens-end"),
+        "tokens-revoked",
     ),
     "POST /people/{name}/tokens/{token_id}/revocation": (
         lambda it: it.client.post(f"/people/{ME}/tokens/{it.token()}/revocation"),
@@ -128,6 +153,10 @@ FORMS: Changes = {
     ),
     "POST /motors/{name}/notes/{note_id}/withdrawal": (
         lambda it: it.client.post(f"{MOTOR}/notes/{it.note()}/withdrawal", data={"reason": "wrong motor"}),
+        "note-withdrawn",
+    ),
+    "POST /motors/{name}/notes/{note_id}/undo": (
+        lambda it: it.client.post(f"{MOTOR}/notes/{it.note(kind='maintenance')}/undo"),
         "note-withdrawn",
     ),
     "POST /motors/{name}/reports": (

@@ -8,14 +8,13 @@ import pytest
 
 from service.access.login_links import address_of, new_login_link
 from service.api import ApiContext
-from service.storage.records import Role
-from testing.service.accounts import TESTS
+from testing.service.accounts import EVERYTHING, TESTS
 
 
 @pytest.fixture
 def link(context: ApiContext, anybody: httpx.Client) -> str:
     now_ns = time.time_ns()
-    context.repository.add_user("demo", list(Role), password=None, by=TESTS, now_ns=now_ns)
+    context.repository.add_user("demo", EVERYTHING, password=None, by=TESTS, now_ns=now_ns)
     secret = new_login_link(context.repository, "demo", by=TESTS, now_ns=now_ns)
     whole = address_of(str(anybody.base_url).rstrip("/"), secret)
     parts = urlsplit(whole)

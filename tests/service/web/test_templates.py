@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 import service.web
+from service.web.rendering import environment
 from service.web.static_files import static_tree
 
 ROOT = Path(service.web.__file__).parent
@@ -84,3 +85,18 @@ def test_every_file_of_ours_is_looked_at() -> None:
 )  # fmt: skip
 def test_what_is_looked_for_is_found(text: str) -> None:
     assert len(marks(text, IN_TEMPLATES)) == 1
+
+
+@pytest.mark.parametrize("value", [None, True, object(), [], {"level": 1}, ("a",)])
+def test_what_people_cannot_read_is_an_error_and_not_printed(value: object) -> None:
+    with pytest.raises(TypeError, match="a template prints text, numbers and paths, found"):
+        environment().from_string("{{ value }}").render(value=value)
+
+
+def test_text_numbers_and_paths_are_printed() -> None:
+    shown = (
+        environment()
+        .from_string("{{ a }} {{ b }} {{ c }} {{ d }}")
+        .render(a="<b>", b=2, c=0.5, d=Path("plant") / "mcc.toml")
+    )
+    assert shown == "&lt;b&gt; 2 0.5 plant/mcc.toml"

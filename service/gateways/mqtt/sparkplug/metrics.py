@@ -59,6 +59,7 @@ def _condition(motor: MotorFigures) -> Iterator[tuple[str, DataType, Value]]:
     yield "Condition/State", DataType.STRING, motor.state
     yield "Condition/Kind", DataType.STRING, motor.kind
     yield "Condition/Phase", DataType.STRING, motor.phase
+    yield "Condition/Likely Phases", DataType.STRING, motor.likely_phases or None
     yield "Condition/Level", DataType.DOUBLE, motor.mu_f
     yield "Condition/Level Low", DataType.DOUBLE, low
     yield "Condition/Level High", DataType.DOUBLE, high
@@ -68,6 +69,7 @@ def _condition(motor: MotorFigures) -> Iterator[tuple[str, DataType, Value]]:
     yield "Condition/Detection Limit", DataType.DOUBLE, motor.detection_limit
     yield "Condition/Load", DataType.DOUBLE, motor.load_level
     yield "Condition/Rotor", DataType.STRING, motor.rotor
+    yield "Condition/Finding", DataType.STRING, motor.finding
     yield "Condition/Since", DataType.DATE_TIME, _ms(motor.since_ns)
     yield "Condition/As Of", DataType.DATE_TIME, _ms(motor.as_of_ns)
     yield "Condition/Advice", DataType.STRING, motor.advice

@@ -2,6 +2,8 @@
 
 import hashlib
 from collections.abc import Iterator, Mapping
+from ipaddress import IPv6Address, IPv6Network, ip_address
+from typing import Final
 
 from sqlalchemy import delete, select
 from sqlalchemy.dialects import postgresql, sqlite
@@ -26,12 +28,32 @@ def account_key(name: str) -> str:
     return hashlib.sha256(name.encode("utf-8", "surrogatepass")).hexdigest()
 
 
+IPV6_OF_A_CUSTOMER: Final = 64
+"""Bits of an IPv6 address that whoever has the network cannot choose."""
+
+
+def counted_address(origin: str) -> str:
+    """Return what failed logins are counted by: an IPv6 network of one customer counts as one address.
+
+    origin: an address as the audit trail has it, perhaps with the name of a gateway and a blank before it.
+    """
+    gateway, blank, host = origin.rpartition(" ")
+    try:
+        found = ip_address(host)
+    except ValueError:
+        return origin
+    if not isinstance(found, IPv6Address) or found.ipv4_mapped is not None:
+        return origin
+    return f"{gateway}{blank}{IPv6Network((int(found), IPV6_OF_A_CUSTOMER), strict=False)}"
+
+
 class FailedLoginRows(Sessions):
-    def attempt_login(self, account: str, address: str, limits: LoginLimits, *, now_ns: int) -> int | None:
+    def attempt_login(self, account: str, origin: str, limits: LoginLimits, *, now_ns: int) -> int | None:
         """Count an attempt as failed, until it has succeeded; return None, or until when none is tried.
 
         An account that many addresses fail at is still open to the address of its last login.
         """
+        address = counted_address(origin)
         allowed = _allowed(account_key(account), address, limits)
         with self._read() as session:
             locked = _locked_until(session, account, address, now_ns)
@@ -53,27 +75,28 @@ class FailedLoginRows(Sessions):
                     row.locked_until_ns = now_ns + round(lock_s * NANOSECONDS_PER_SECOND)
                     told = {"address": key[1], "failures": row.failures, "seconds": lock_s}
                     subject = _known(session, account) if key[0] else ""
-                    by = Actor(_known(session, account), address)
+                    by = Actor(_known(session, account), origin)
                     note_change(
                         session, by, AuditAction.LOGIN_LOCKED, ("user", subject), now_ns=now_ns, after=told
                     )
             return None
 
-    def note_login_failed(self, account: str, address: str, reason: str, *, now_ns: int) -> None:
+    def note_login_failed(self, account: str, origin: str, reason: str, *, now_ns: int) -> None:
         """Note why a login failed; it is counted already."""
         with self._write() as session:
             name = _known(session, account)
             note_change(
                 session,
-                Actor(name, address),
+                Actor(name, origin),
                 AuditAction.LOGIN_FAILED,
                 ("user", name),
                 now_ns=now_ns,
                 after={"reason": reason},
             )
 
-    def forget_attempt(self, account: str, address: str) -> None:
+    def forget_attempt(self, account: str, origin: str) -> None:
         """Take back an attempt that succeeded: nothing is held against this account at this address."""
+        address = counted_address(origin)
         pair = (account_key(account), address)
         with self._write() as session:
             for key in sorted((pair, (pair[0], ""), ("", address))):
@@ -111,7 +134,8 @@ def _allowed(account: str, address: str, limits: LoginLimits) -> Mapping[Key, in
 def _locked_until(session: Session, account: str, address: str, now_ns: int) -> int | None:
     key = account_key(account)
     keys = [(key, address), ("", address)]
-    if session.scalar(select(UserRow.last_login_origin).where(UserRow.name == account)) != address:
+    last_origin = session.scalar(select(UserRow.last_login_origin).where(UserRow.name == account))
+    if last_origin is None or counted_address(last_origin) != address:
         keys.append((key, ""))
     found = [session.get(FailedLoginRow, key) for key in keys]
     return max((row.locked_until_ns for row in found if row and row.locked_until_ns > now_ns), default=None)

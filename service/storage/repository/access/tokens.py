@@ -1,14 +1,28 @@
-"""Secrets of users for programs."""
+"""Secrets of users for programs. None lasts longer, or may do more, than the one that asks for it."""
 
 import uuid
 from collections.abc import Iterable
 
-from sqlalchemy import func, select, update
+from sqlalchemy import delete, func, select, update
+from sqlalchemy.orm import Session
 
 from service.audit.actions import AuditAction
-from service.storage.errors import NotFoundError, TooManyTokensError
+from service.storage.errors import (
+    NotFoundError,
+    PasswordOfAnotherError,
+    TokenOfAnotherError,
+    TooManyTokensError,
+    WiderTokenError,
+)
 from service.storage.models import ApiTokenRow, UserRow
 from service.storage.records import Actor, ApiToken, Cursor, Page, User
+from service.storage.repository.access.ending import (
+    end_tokens,
+    scope_words,
+    token_document,
+    token_of,
+    with_descendants,
+)
 from service.storage.repository.access.users import user_of
 from service.storage.repository.audit.entries import note_change
 from service.storage.repository.sessions import Sessions, found, only, page_of
@@ -26,12 +40,22 @@ class TokenRows(Sessions):
         *,
         scope: Iterable[str] | None,
         expires_ns: int | None,
+        parent: str | None = None,
         by: Actor,
         now_ns: int,
     ) -> ApiToken:
-        """Keep a new secret of a user by its digest. Raises NotFoundError, TooManyTokensError."""
+        """Keep a new secret of a user by its digest; their tokens that have expired go.
+
+        parent: the token that asks, and with which the new one ends; None where a person does.
+
+        Raises NotFoundError, TooManyTokensError, TokenOfAnotherError, PasswordOfAnotherError,
+        WiderTokenError.
+        """
         with self._write() as session:
-            found(session, UserRow, user, "user", lock=True)
+            _require_own(found(session, UserRow, user, "user", lock=True), by)
+            session.execute(
+                delete(ApiTokenRow).where(ApiTokenRow.user == user, ApiTokenRow.expires_ns <= now_ns)
+            )
             number = session.scalar(select(func.count()).where(ApiTokenRow.user == user))
             if number is not None and number >= MOST_TOKENS:
                 raise TooManyTokensError(user, MOST_TOKENS)
@@ -40,20 +64,23 @@ class TokenRows(Sessions):
                 user=user,
                 label=label,
                 digest=digest,
-                scope=None if scope is None else " ".join(sorted(set(scope))),
+                scope=scope_words(scope),
+                parent=parent,
                 created_ns=now_ns,
                 expires_ns=expires_ns,
             )
+            added = token_of(row)
+            if parent is not None:
+                _require_no_wider(added, _token_of_user(session, parent, user))
             session.add(row)
             session.flush()
-            added = _token(row)
             note_change(
                 session,
                 by,
                 AuditAction.TOKEN_ADDED,
                 ("token", added.id),
                 now_ns=now_ns,
-                after=_document(added),
+                after=token_document(added),
             )
             return added
 
@@ -63,14 +90,14 @@ class TokenRows(Sessions):
         if user is not None:
             query = query.where(ApiTokenRow.user == user)
         with self._read() as session:
-            return page_of(session, query, [ApiTokenRow.id], _token, limit=limit, after=after)
+            return page_of(session, query, [ApiTokenRow.id], token_of, limit=limit, after=after)
 
     def token_with(self, digest: str) -> tuple[ApiToken, User] | None:
         """Return the token with this digest and whose it is, expired or not; None where there is none."""
         query = select(ApiTokenRow, UserRow).join(UserRow, UserRow.name == ApiTokenRow.user)
         with self._read() as session:
             row = session.execute(query.where(ApiTokenRow.digest == digest)).one_or_none()
-            return None if row is None else (_token(row[0]), user_of(row[1]))
+            return None if row is None else (token_of(row[0]), user_of(row[1]))
 
     def note_token_used(self, token_id: str, *, now_ns: int) -> None:
         """Note that a token is used."""
@@ -78,40 +105,55 @@ class TokenRows(Sessions):
             session.execute(update(ApiTokenRow).where(ApiTokenRow.id == token_id).values(used_ns=now_ns))
 
     def revoke_token(self, token_id: str, *, user: str | None, by: Actor, now_ns: int) -> None:
-        """Delete a token; with `user` only one of theirs. Raises NotFoundError."""
-        query = select(ApiTokenRow).where(ApiTokenRow.id == token_id).with_for_update()
+        """Delete a token, and those that were made with it; with `user` only one of theirs.
+
+        Raises NotFoundError.
+        """
         with self._write() as session:
-            row = only(session, query)
-            if row is None or user not in (None, row.user):
-                raise NotFoundError("token", token_id)
-            note_change(
-                session,
-                by,
-                AuditAction.TOKEN_REVOKED,
-                ("token", token_id),
-                now_ns=now_ns,
-                before=_document(_token(row)),
-            )
-            session.delete(row)
+            row = _token_of_user(session, token_id, user)
+            others = session.scalars(select(ApiTokenRow).where(ApiTokenRow.user == row.user)).all()
+            for ended in (*with_descendants(others, row),):
+                note_change(
+                    session,
+                    by,
+                    AuditAction.TOKEN_REVOKED,
+                    ("token", ended.id),
+                    now_ns=now_ns,
+                    before=token_document(token_of(ended)),
+                )
+            session.execute(delete(ApiTokenRow).where(ApiTokenRow.id == token_id))  # the others go with it
+
+    def revoke_tokens(self, user: str, *, by: Actor, now_ns: int) -> None:
+        """Delete all tokens of a user; harmless where there are none. Raises NotFoundError."""
+        with self._write() as session:
+            found(session, UserRow, user, "user", lock=True)
+            end_tokens(session, user, by=by, now_ns=now_ns)
 
 
-def _token(row: ApiTokenRow) -> ApiToken:
-    return ApiToken(
-        id=row.id,
-        user=row.user,
-        label=row.label,
-        scope=None if row.scope is None else frozenset(row.scope.split()),
-        created_ns=row.created_ns,
-        expires_ns=row.expires_ns,
-        used_ns=row.used_ns,
-    )
+def _token_of_user(session: Session, token_id: str, user: str | None) -> ApiTokenRow:
+    """Return a token, with `user` only one of theirs. Raises NotFoundError."""
+    row = only(session, select(ApiTokenRow).where(ApiTokenRow.id == token_id).with_for_update())
+    if row is None or user not in (None, row.user):
+        raise NotFoundError("token", token_id)
+    return row
 
 
-def _document(token: ApiToken) -> dict[str, object]:
-    """Return what the audit trail keeps of a token."""
-    return {
-        "user": token.user,
-        "label": token.label,
-        "scope": None if token.scope is None else sorted(token.scope),
-        "expires_ns": token.expires_ns,
-    }
+def _require_own(row: UserRow, by: Actor) -> None:
+    """Raise where somebody may not make a token of this user.
+
+    Nobody can log in as a user for a program: the owner of the files stands in for them.
+    """
+    if row.password_set_by is not None:
+        raise PasswordOfAnotherError(row.name, row.password_set_by)
+    is_program = row.password is None and row.subject is None
+    if by.name != row.name and not (by.owns_files and is_program):
+        raise TokenOfAnotherError(row.name)
+
+
+def _require_no_wider(child: ApiToken, row: ApiTokenRow) -> None:
+    """Raise WiderTokenError where a token would outlive the one that asks for it, or allow more."""
+    parent = token_of(row)
+    if parent.expires_ns is not None and (child.expires_ns is None or child.expires_ns > parent.expires_ns):
+        raise WiderTokenError(parent.label, "lasts longer")
+    if parent.scope is not None and (child.scope is None or not child.scope <= parent.scope):
+        raise WiderTokenError(parent.label, "may do more")

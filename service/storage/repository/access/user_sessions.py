@@ -7,7 +7,8 @@ from service.audit.actions import AuditAction
 from service.storage.errors import NotFoundError
 from service.storage.models import UserRow, UserSessionRow
 from service.storage.records import Actor, UserSession
-from service.storage.repository.access.users import end_sessions, user_of
+from service.storage.repository.access.ending import end_all
+from service.storage.repository.access.users import user_of
 from service.storage.repository.audit.entries import note_change
 from service.storage.repository.sessions import Sessions, found
 
@@ -17,10 +18,20 @@ MOST_SESSIONS = 100
 
 class UserSessionRows(Sessions):
     def begin_session(
-        self, digest: str, user: str, way: str, *, oldest_ns: int, idle_since_ns: int, by: Actor, now_ns: int
+        self,
+        digest: str,
+        user: str,
+        way: str,
+        *,
+        second_factor: bool = False,
+        oldest_ns: int,
+        idle_since_ns: int,
+        by: Actor,
+        now_ns: int,
     ) -> None:
         """Note a login, and its way: "password", or an identity provider's address.
 
+        second_factor: whether more was shown than a password.
         Sessions that began before oldest_ns, or were last used before idle_since_ns, go.
 
         Raises NotFoundError (the user was deleted, or disabled, meanwhile).
@@ -38,7 +49,14 @@ class UserSessionRows(Sessions):
             surplus = session.scalars(latest).all()
             session.execute(delete(UserSessionRow).where(UserSessionRow.digest.in_(surplus)))
             session.add(
-                UserSessionRow(digest=digest, user=user, origin=by.origin, created_ns=now_ns, used_ns=now_ns)
+                UserSessionRow(
+                    digest=digest,
+                    user=user,
+                    origin=by.origin,
+                    created_ns=now_ns,
+                    used_ns=now_ns,
+                    second_factor=second_factor,
+                )
             )
 
     def note_login(self, user: str, way: str, *, by: Actor, now_ns: int) -> None:
@@ -57,7 +75,9 @@ class UserSessionRows(Sessions):
             if row is None:
                 return None
             login, user = row
-            return UserSession(user_of(user), login.origin, login.created_ns, login.used_ns)
+            return UserSession(
+                user_of(user), login.origin, login.created_ns, login.used_ns, login.second_factor
+            )
 
     def note_session_used(self, digest: str, *, now_ns: int) -> None:
         """Note that a login is used."""
@@ -76,11 +96,11 @@ class UserSessionRows(Sessions):
             session.delete(row)
 
     def end_sessions_of(self, user: str, *, by: Actor, now_ns: int) -> None:
-        """End all logins of a user, also those at gateways. Raises NotFoundError."""
+        """End all logins of a user, also those at gateways, and all their tokens. Raises NotFoundError."""
         with self._write() as session:
             row = found(session, UserRow, user, "user", lock=True)
             row.sessions_ended_ns = now_ns
-            end_sessions(session, user)
+            end_all(session, user, by=by, now_ns=now_ns)
             note_change(session, by, AuditAction.SESSIONS_ENDED, ("user", user), now_ns=now_ns)
 
 

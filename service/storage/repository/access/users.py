@@ -6,9 +6,22 @@ from sqlalchemy import delete, exists, select
 from sqlalchemy.orm import Session
 
 from service.audit.actions import AuditAction
-from service.storage.errors import LastAdministratorError, NotFoundError, UserExistsError
-from service.storage.models import ApiTokenRow, FailedLoginRow, LoginLinkRow, UserRow, UserSessionRow
+from service.storage.errors import (
+    AuditorAccountError,
+    LastAdministratorError,
+    NotFoundError,
+    NotOwnPasswordError,
+    RolesNotSeparateError,
+    UserExistsError,
+)
+from service.storage.models import FailedLoginRow, UserRow
 from service.storage.records import Actor, Cursor, Page, Role, User
+from service.storage.repository.access.ending import (
+    end_all,
+    end_sessions,
+    end_tokens,
+    forget_second_factor,
+)
 from service.storage.repository.access.failed_logins import account_key
 from service.storage.repository.audit.entries import note_change
 from service.storage.repository.audit.values import changed
@@ -33,11 +46,28 @@ class UserRows(Sessions):
         with self._read() as session:
             return page_of(session, select(UserRow), [UserRow.name], user_of, limit=limit, after=after)
 
+    def users_with(self, role: Role) -> frozenset[str]:
+        """Return the names of the users who have a role, and are not disabled."""
+        with self._read() as session:
+            rows = session.execute(select(UserRow.name, UserRow.roles).where(UserRow.disabled.is_(False)))
+            return frozenset(name for name, words in rows if role in words.split())
+
     def password_of(self, name: str) -> str | None:
         """Return the hash of a user's password; None for users who are unknown, disabled or have none."""
         with self._read() as session:
             row = session.get(UserRow, name)
             return None if row is None or row.disabled else row.password
+
+    def password_to_change(self, name: str, *, by: Actor) -> str | None:
+        """Return the hash of a password that somebody is to change, also of a user who is disabled.
+
+        Raises NotFoundError, AuditorAccountError, NotOwnPasswordError: who may not set a password learns
+        nothing of it.
+        """
+        with self._read() as session:
+            row = found(session, UserRow, name, KIND)
+            _require_password_here(user_of(row), by)
+            return row.password
 
     def add_user(
         self,
@@ -50,20 +80,26 @@ class UserRows(Sessions):
         by: Actor,
         now_ns: int,
     ) -> User:
-        """Add a user; password is a hash. Raises UserExistsError."""
+        """Add a user; password is a hash, which they change if somebody else chose it.
+
+        Raises UserExistsError, RolesNotSeparateError, AuditorAccountError.
+        """
+        wanted = _separate(name, roles)
+        if Role.SECAUD in wanted:
+            require_owner(by, name, "the role SECAUD")
         with self._write() as session:
             if session.get(UserRow, name, with_for_update=True) is not None:
                 raise UserExistsError(name)
             row = UserRow(
                 name=name,
                 full_name=full_name,
-                roles=_words(roles),
-                password=password,
+                roles=_words(wanted),
                 subject=subject,
                 disabled=False,
                 created_ns=now_ns,
-                password_set_ns=None if password is None else now_ns,
             )
+            if password is not None:
+                _set_password(row, password, by=by, now_ns=now_ns)
             session.add(row)
             session.flush()
             user = user_of(row)
@@ -82,15 +118,23 @@ class UserRows(Sessions):
         by: Actor,
         now_ns: int,
     ) -> User:
-        """Change what is not None. Other roles, and being disabled, end the user's sessions.
+        """Change what is not None. Other roles end the user's sessions, being disabled their tokens, too.
 
-        Raises NotFoundError, LastAdministratorError.
+        Who becomes an auditor begins without a password, second factor and tokens: others may have them.
+
+        Raises NotFoundError, LastAdministratorError, RolesNotSeparateError, AuditorAccountError.
         """
+        wanted = None if roles is None else _separate(name, roles)
         with self._write() as session:
             row = _locked(session, name)
             before = user_of(row)
-            if roles is not None:
-                row.roles = _words(roles)
+            if wanted is not None:
+                if Role.SECAUD in wanted - before.roles:
+                    require_owner(by, name, "the role SECAUD")
+                    row.password = row.password_set_ns = row.password_set_by = None
+                    forget_second_factor(session, row)
+                    end_tokens(session, name, by=by, now_ns=now_ns)
+                row.roles = _words(wanted)
             if disabled is not None:
                 row.disabled = disabled
             if full_name is not None:
@@ -99,8 +143,10 @@ class UserRows(Sessions):
             after = user_of(row)
             if _administers(before) and not _administers(after):
                 _require_administrator(session, name)
-            if after.roles != before.roles or after.disabled:
+            if after.roles != before.roles:
                 end_sessions(session, name)
+            if after.disabled:
+                end_all(session, name, by=by, now_ns=now_ns)
             if after != before:
                 told = changed(_document(before), _document(after))
                 note_change(
@@ -115,15 +161,23 @@ class UserRows(Sessions):
             return after
 
     def set_password(self, name: str, password: str, *, by: Actor, now_ns: int) -> User:
-        """Give a user another password, a hash, which ends their sessions. Raises NotFoundError."""
+        """Give a user another password, a hash, which ends their sessions and tokens.
+
+        Where somebody else chose it, they change it before they do anything with it.
+
+        Raises NotFoundError, AuditorAccountError, NotOwnPasswordError.
+        """
         with self._write() as session:
             row = _locked(session, name)
-            row.password, row.password_set_ns = password, now_ns
-            end_sessions(session, name)
+            _require_password_here(user_of(row), by)
+            _set_password(row, password, by=by, now_ns=now_ns)
+            end_all(session, name, by=by, now_ns=now_ns)
             _forget_failures(session, name)
             session.flush()
-            note_change(session, by, AuditAction.PASSWORD_SET, (KIND, name), now_ns=now_ns)
-            return user_of(row)
+            after = user_of(row)
+            told = {"must_change": after.must_change_password}
+            note_change(session, by, AuditAction.PASSWORD_SET, (KIND, name), now_ns=now_ns, after=told)
+            return after
 
     def renew_hash(self, name: str, before: str, after: str) -> None:
         """Keep a password under a hash of other costs, if it is still the same password."""
@@ -150,8 +204,8 @@ class UserRows(Sessions):
             note_change(
                 session, by, AuditAction.USER_DELETED, (KIND, name), now_ns=now_ns, before=_document(user)
             )
-            end_sessions(session, name)
-            session.execute(delete(ApiTokenRow).where(ApiTokenRow.user == name))
+            end_all(session, name, by=by, now_ns=now_ns)
+            forget_second_factor(session, row)
             _forget_failures(session, name)
             session.delete(row)
 
@@ -160,9 +214,10 @@ class UserRows(Sessions):
     ) -> User:
         """Return who an identity provider says that somebody is, with the roles that it gives them now.
 
-        Whoever was never here becomes a user. Raises UserExistsError, where `name` is somebody else.
+        Whoever was never here becomes a user. Raises UserExistsError, where `name` is somebody else, and
+        RolesNotSeparateError.
         """
-        wanted = _words(roles)
+        wanted = _words(_separate(name, roles))
         with self._write() as session:
             row = only(session, select(UserRow).where(UserRow.subject == subject).with_for_update())
             if row is None:
@@ -179,15 +234,40 @@ class UserRows(Sessions):
                 if row.roles != wanted:
                     row.roles = wanted
                     end_sessions(session, row.name)
-            row.full_name = full_name
+            row.full_name, row.confirmed_ns = full_name, now_ns
             session.flush()
             user = user_of(row)
-            if user != before:
-                told = changed({} if before is None else _document(before), _document(user))
+            told = changed({} if before is None else _document(before), _document(user))
+            if told[1]:
                 note_change(
                     session, by, action, (KIND, user.name), now_ns=now_ns, before=told[0], after=told[1]
                 )
             return user
+
+    def refuse_subject(self, subject: str, *, by: Actor, now_ns: int) -> None:
+        """Note that the identity provider does not let somebody in any more: they have no role, and all ends.
+
+        Harmless for who was never here.
+        """
+        with self._write() as session:
+            row = only(session, select(UserRow).where(UserRow.subject == subject).with_for_update())
+            if row is None:
+                return
+            before = _document(user_of(row))
+            row.roles, row.confirmed_ns = _words(()), None
+            end_all(session, row.name, by=by, now_ns=now_ns)
+            told = changed(before, _document(user_of(row)))
+            if told[1]:
+                subject_of = (KIND, row.name)
+                note_change(
+                    session,
+                    by,
+                    AuditAction.USER_CHANGED,
+                    subject_of,
+                    now_ns=now_ns,
+                    before=told[0],
+                    after=told[1],
+                )
 
 
 def user_of(row: UserRow) -> User:
@@ -201,9 +281,12 @@ def user_of(row: UserRow) -> User:
         subject=row.subject,
         created_ns=row.created_ns,
         password_set_ns=row.password_set_ns,
+        password_set_by=row.password_set_by,
         sessions_ended_ns=row.sessions_ended_ns,
+        confirmed_ns=row.confirmed_ns,
         last_login_ns=row.last_login_ns,
         last_login_origin=row.last_login_origin,
+        second_factor_ns=row.second_factor_ns,
     )
 
 
@@ -217,10 +300,32 @@ def _document(user: User) -> dict[str, object]:
     }
 
 
-def end_sessions(session: Session, name: str) -> None:
-    """End all sessions of a user, and the links that would begin another."""
-    session.execute(delete(UserSessionRow).where(UserSessionRow.user == name))
-    session.execute(delete(LoginLinkRow).where(LoginLinkRow.user == name))
+def _separate(name: str, roles: Iterable[Role]) -> frozenset[Role]:
+    """Return roles that one user may have. Raises RolesNotSeparateError."""
+    wanted = frozenset(roles)
+    if wanted >= {Role.SECADM, Role.SECAUD}:
+        raise RolesNotSeparateError(name)
+    return wanted
+
+
+def require_owner(by: Actor, name: str, what: str) -> None:
+    """Raise AuditorAccountError for all but the owner of the files: no SECADM gets to be an auditor."""
+    if not by.owns_files:
+        raise AuditorAccountError(name, what)
+
+
+def _require_password_here(user: User, by: Actor) -> None:
+    """Raise where somebody may not set a user's password: AuditorAccountError, NotOwnPasswordError."""
+    if user.subject is not None:
+        raise NotOwnPasswordError(user.name, "they log in at the identity provider")
+    if Role.SECAUD in user.roles and by.name != user.name:
+        require_owner(by, user.name, "the password")
+
+
+def _set_password(row: UserRow, password: str, *, by: Actor, now_ns: int) -> None:
+    """Keep a password's hash, and who else knows it; the owner of the files could read all anyway."""
+    row.password, row.password_set_ns = password, now_ns
+    row.password_set_by = None if by.owns_files or by.name == row.name else by.name
 
 
 def _words(roles: Iterable[Role]) -> str:

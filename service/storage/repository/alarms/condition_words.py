@@ -3,6 +3,7 @@
 from collections.abc import Collection, Mapping, Sequence
 
 from core.condition.kinds import Kind
+from core.condition.verdict.phase_words import kinds_in_words
 from core.terms import phrase
 from core.time_words import time_ahead
 from service.alarms.growth import LevelSeen, magnitude
@@ -27,10 +28,13 @@ class ConditionWords:
 
     @property
     def subject(self) -> str:
-        """Return what has changed, and in which phase; of what is unclear, what it may be."""
+        """Return what has changed, and in which phase; of what is unclear, what it may be.
+
+        Likely phases are without their probabilities: those change with each record, the cause does not.
+        """
         kinds = _texts(self._document.get("candidates")) or [str(self._condition.kind)]
-        words = " or ".join(phrase(kind) for kind in kinds)
-        phase = self._condition.phase
+        phase, probabilities = self._condition.phase, self._condition.phase_probabilities
+        words = kinds_in_words(kinds, phase, probabilities, phrase, with_shares=False)
         return words if phase is None else f"{words} in phase {phase}"
 
     @property

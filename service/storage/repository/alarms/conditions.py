@@ -8,6 +8,7 @@ from sqlalchemy.orm import Session
 
 from core.condition.events import ENDING
 from core.condition.kinds import State
+from core.motor_condition.parts import parts_of
 from service.alarms.condition_rules import AT_ONCE, ConditionRules
 from service.alarms.confirmation import Decision
 from service.alarms.growth import LevelSeen, has_grown, is_another_kind
@@ -18,9 +19,9 @@ from service.storage.records import AlarmPlace, AlarmSpec, ConditionEntry
 from service.storage.repository.alarms.causes import clear, forget_cleared, raised_at, reopen, supersede
 from service.storage.repository.alarms.changes import change, locked
 from service.storage.repository.alarms.condition_words import ConditionWords, is_fault_level
-from service.storage.repository.alarms.drift import settle_drift_alarm
 from service.storage.repository.alarms.suppression import suppress_by_design
-from service.storage.repository.sessions import Sessions, found, record_of
+from service.storage.repository.conditions.motor_conditions import settle_alarms_of_parts, stator_entry
+from service.storage.repository.sessions import Sessions, found
 from service.storage.states import AlarmEvent, AlarmState
 
 OF_STATE = (AlarmKind.CONDITION_WATCH, AlarmKind.CONDITION_FAULT)
@@ -36,16 +37,18 @@ class ConditionAlarmRows(Sessions):
         """
         stands = exists().where(AlarmRow.motor == ConditionRow.motor, AlarmRow.cleared_ns.is_(None))
         concerned = (
-            select(ConditionRow)
+            select(ConditionRow.motor)
             .where(or_(ConditionRow.state.in_(TO_BE_TOLD), stands))
             .order_by(ConditionRow.motor)
-            .with_for_update(key_share=True)
         )
-        with self._write() as session:
-            for row in session.scalars(concerned).all():
-                motor = found(session, MotorRow, row.motor, "motor")
-                settle_alarm(session, motor, record_of(ConditionEntry, row), now_ns=now_ns, rules=rules)
-                settle_drift_alarm(session, motor, row.parameters, now_ns=now_ns)
+        with self._read() as session:
+            motors = session.scalars(concerned).all()
+        for name in motors:
+            with self._write() as session:
+                motor = found(session, MotorRow, name, "motor", lock=True)
+                row = found(session, ConditionRow, name, "motor", lock=True)
+                settle_alarm(session, motor, stator_entry(row), now_ns=now_ns, rules=rules)
+                settle_alarms_of_parts(session, row, parts_of(row.document), now_ns=now_ns)
 
 
 def settle_alarm(

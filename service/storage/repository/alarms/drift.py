@@ -5,8 +5,8 @@ from typing import Any, Final
 
 from sqlalchemy.orm import Session
 
+from core.tracking.advice import drift_advice, drift_reason
 from core.tracking.finding import TrackedParameters, TrackingState
-from service.alarms.drift_rules import drift_advice, drift_reason
 from service.alarms.kinds import AlarmKind
 from service.storage.models import AlarmRow, MotorRow
 from service.storage.models.alarms import is_open

@@ -6,8 +6,9 @@ from typing import Final
 from sqlalchemy import exists, or_, select
 from sqlalchemy.orm import Session, aliased
 
+from core.rotor.advice import rotor_advice
 from core.rotor.trend import RotorCondition
-from service.alarms.rotor_rules import KINDS, rotor_advice
+from service.alarms.kinds import ROTOR_KINDS as KINDS
 from service.storage.models import AlarmRow, MotorRow, RotorFindingRow
 from service.storage.models.alarms import is_open
 from service.storage.records import AlarmPlace, AlarmSpec
@@ -104,7 +105,7 @@ def _tell(
 
 def _reason(condition: RotorCondition) -> str:
     severity_dB, change_dB = condition.severity_dB, condition.change_dB
-    told = [] if severity_dB is None else [f"asymmetry of the rotor {severity_dB:.1f} dB"]
+    told = [] if severity_dB is None else [f"rotor bar severity {severity_dB:.1f} dB"]
     if change_dB is not None:
         told.append(f"{change_dB:+.1f} dB against the baseline of its load")
     return "; ".join([*told, *condition.reasons])

@@ -1,15 +1,17 @@
 """The alarms of a motor's starts: they follow its latest ones, and those that these are compared with."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Final
 
 from sqlalchemy import Select, exists, or_, select
 from sqlalchemy.orm import Session
 
+from core.starts.compared import StartChanges
+from core.starts.notable import LATEST, NotableChange, StartSeen, hard_starts, notable_change
 from core.starts.stress import HOUR_NS, starts_within_hour
 from core.units import NANOSECONDS_PER_DAY
 from service.alarms.kinds import AlarmKind
-from service.alarms.start_rules import LATEST, StartSeen, ToldChange, hard_starts, told_change
 from service.storage.models import AlarmRow, MotorRow, StartRow
 from service.storage.models.alarms import is_open
 from service.storage.records import AlarmPlace, AlarmSpec, StartEntry, StartReference
@@ -29,6 +31,16 @@ OVER: Final[Mapping[AlarmKind, str]] = {
 """The kinds, and why each is over."""
 
 Specs = Mapping[AlarmKind, AlarmSpec]
+
+
+@dataclass(frozen=True, slots=True)
+class NotableStarts:
+    """The latest starts of a motor, latest first, how they compare, what has changed, and since when."""
+
+    latest: Sequence[StartSeen]
+    compared: StartChanges | None
+    change: NotableChange | None
+    since_ns: int | None
 
 
 class StartAlarmRows(Sessions):
@@ -71,6 +83,21 @@ def settle_start_alarms(session: Session, motor: MotorRow, *, now_ns: int) -> No
         end_of_motor(session, motor.name, rows, why, now_ns=now_ns)
 
 
+def notable_starts(session: Session, motor: str) -> NotableStarts:
+    """Return what somebody has to look after in a motor's starts."""
+    latest = latest_starts(session, motor, LOOKED_BACK)
+    if not latest:
+        return NotableStarts((), None, None, None)
+    reference = reference_of(session, motor)
+    changed = _change(latest, reference)
+    return NotableStarts(
+        _all_seen(session, latest[:LATEST]),
+        reference.compared(latest[:LATEST]),
+        None if changed is None else changed.change,
+        None if changed is None else changed.since_ns,
+    )
+
+
 def _has_alarm(motor: str) -> Select[tuple[bool]]:
     return select(exists().where(AlarmRow.motor == motor, AlarmRow.kind.in_(tuple(OVER)), is_open()))
 
@@ -84,11 +111,15 @@ def _specs(session: Session, motor: str) -> Specs:
     return {spec.kind: spec for spec in specs if spec is not None}
 
 
-def _hard(session: Session, latest: Sequence[StartEntry]) -> AlarmSpec | None:
+def _all_seen(session: Session, latest: Sequence[StartEntry]) -> Sequence[StartSeen]:
     from_ns, to_ns = latest[-1].time_ns - HOUR_NS, latest[0].time_ns
     within = (StartRow.motor == latest[0].motor, StartRow.time_ns.between(from_ns, to_ns))
     times = session.scalars(select(StartRow.time_ns).where(*within).order_by(StartRow.time_ns)).all()
-    hard = hard_starts([_seen(one, times) for one in latest])
+    return [_seen(one, times) for one in latest]
+
+
+def _hard(session: Session, latest: Sequence[StartEntry]) -> AlarmSpec | None:
+    hard = hard_starts(_all_seen(session, latest))
     if not hard:
         return None
     worst = next(one for one in latest if one.time_ns == hard[0].time_ns)
@@ -109,25 +140,42 @@ def _seen(entry: StartEntry, times: Sequence[int]) -> StartSeen:
     return StartSeen(entry.time_ns, within, stress.starts_per_hour, heat, stress.source)
 
 
-def _changed(latest: Sequence[StartEntry], reference: StartReference) -> AlarmSpec | None:
+@dataclass(frozen=True, slots=True)
+class _Changed:
+    """A change of the latest starts, since when, maybe earlier, and the latest recording that shows it."""
+
+    change: NotableChange
+    since_ns: int
+    or_earlier: bool
+    recording_id: str | None
+
+
+def _change(latest: Sequence[StartEntry], reference: StartReference) -> _Changed | None:
     later = [one for one in latest if reference.is_like(one) and not reference.holds(one)]
     together = later[:LATEST]
-    told = told_change(reference.compared(together), len(together))
-    if told is None:
+    change = notable_change(reference.compared(together), len(together))
+    if change is None:
         return None
-    since_ns, is_certain = _since(told, later, reference)
+    since_ns, is_certain = _since(change, later, reference)
     is_all = len(latest) < LOOKED_BACK or any(map(reference.holds, latest))
+    return _Changed(change, since_ns, not (is_certain or is_all), together[0].recording)
+
+
+def _changed(latest: Sequence[StartEntry], reference: StartReference) -> AlarmSpec | None:
+    found = _change(latest, reference)
+    if found is None:
+        return None
     return AlarmSpec(
         AlarmKind.CHANGED_STARTS,
-        reason=told.reason(since_ns, or_earlier=not (is_certain or is_all)),
+        reason=found.change.reason(found.since_ns, or_earlier=found.or_earlier),
         subject=SUBJECT,
         one_of_kind=True,
-        advice=told.advice,
-        recording_id=together[0].recording,
+        advice=found.change.advice,
+        recording_id=found.recording_id,
     )
 
 
-def _since(told: ToldChange, later: Sequence[StartEntry], reference: StartReference) -> tuple[int, bool]:
+def _since(told: NotableChange, later: Sequence[StartEntry], reference: StartReference) -> tuple[int, bool]:
     """Return when the first of the starts in a row was that show a change, and whether one before does not.
 
     later: latest first.

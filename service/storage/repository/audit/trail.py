@@ -1,5 +1,6 @@
 """Reads the audit trail: pages of it for people, all of it for who verifies or exports it."""
 
+import json
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -11,10 +12,21 @@ from service.audit.actions import AuditAction
 from service.audit.entries import Anchor, AuditEntry
 from service.storage.models import AuditEntryRow, AuditForwardingRow, AuditHeadRow
 from service.storage.records import Cursor, Page
-from service.storage.records.actors import Actor
+from service.storage.records.actors import SERVICE, Actor
+from service.storage.records.alarm_sources import NotedRefusal
 from service.storage.repository.audit.entries import note_change
+from service.storage.repository.audit.values import changed, kept
 from service.storage.repository.sessions import Sessions, columns_of, page_of, within
 
+REFUSALS = (
+    AuditAction.LOGIN_FAILED,
+    AuditAction.LOGIN_LOCKED,
+    AuditAction.LOGIN_REFUSED,
+    AuditAction.REQUEST_REFUSED,
+    AuditAction.TOKEN_REFUSED,
+)
+"""The entries that alarms of security are raised for."""
+MOST_REFUSALS = 500
 READ_AT_ONCE = 1000
 """So many entries are in memory when all are read."""
 
@@ -87,6 +99,48 @@ class AuditRows(Sessions):
         with self._read() as session:
             order = [AuditEntryRow.number]
             return page_of(session, query, order, AuditEntry, limit=limit, after=after, descending=True)
+
+    def refusals_since(self, since_ns: int) -> tuple[NotedRefusal, ...]:
+        """Return what was refused since a time; of each kind the latest MOST_REFUSALS entries."""
+        found = []
+        with self._read() as session:
+            for action in REFUSALS:
+                latest = (
+                    select(AuditEntryRow)
+                    .where(AuditEntryRow.action == action)
+                    .order_by(AuditEntryRow.number.desc())
+                    .limit(MOST_REFUSALS)
+                )
+                for row in session.scalars(latest):
+                    if row.time_ns >= since_ns:
+                        requests = json.loads(row.after or "{}").get("requests", 1)
+                        found.append(NotedRefusal(action, row.actor, row.origin, row.subject, requests))
+        return tuple(found)
+
+    def note_settings(self, settings: Mapping[str, object], installation: str, *, now_ns: int) -> None:
+        """Note where the settings of an installation differ from those that it started with before.
+
+        settings: those that have not their default; what is left out has it.
+        """
+        mine = (AuditEntryRow.action == AuditAction.SETTINGS_CHANGED, AuditEntryRow.subject == installation)
+        with self._write() as session:
+            before: dict[str, object] = {}
+            for after in session.scalars(
+                select(AuditEntryRow.after).where(*mine).order_by(AuditEntryRow.number)
+            ):
+                before |= json.loads(after or "{}")
+            now = json.loads(kept(settings) or "{}")
+            was, becomes = changed({name: value for name, value in before.items() if value is not None}, now)
+            if becomes:
+                note_change(
+                    session,
+                    SERVICE,
+                    AuditAction.SETTINGS_CHANGED,
+                    ("service", installation),
+                    now_ns=now_ns,
+                    before=was,
+                    after=becomes,
+                )
 
     def forwarded_audit_entry(self) -> int:
         """Return the number of the last entry that the syslog server has; 0 before the first."""

@@ -41,14 +41,14 @@ class ConditionEventRows(Sessions):
         event: Event,
         *,
         by: Actor,
-        told_by: str | None = None,
+        on_behalf_of: str | None = None,
         now_ns: int,
         most_notes: int | None = None,
     ) -> ConditionEvent:
         """Keep what somebody tells of a motor, and have its condition follow.
 
-        told_by: who says so, where it is another than who asks. most_notes: so many notes the motor may have,
-        those that baselines leave counted; None: any number. Raises NotFoundError, OutOfServiceError,
+        on_behalf_of: whom they name as who says so. most_notes: so many notes the motor may have, those that
+        baselines leave counted; None: any number. Raises NotFoundError, OutOfServiceError,
         TooManyNotesError.
         """
         with self._write() as session:
@@ -60,7 +60,7 @@ class ConditionEventRows(Sessions):
             )
             if most_notes is not None and has_as_many(session, told, most_notes):
                 raise TooManyNotesError(motor, most_notes)
-            kept = keep_event(session, motor, event, told_by or by.name, now_ns)
+            kept = keep_event(session, motor, event, by, now_ns, on_behalf_of=on_behalf_of)
             if event.kind in RENEWING:
                 settle_start_alarms(session, place, now_ns=now_ns)
             is_restart = event.kind is EventKind.REFERENCE_RESTARTED
@@ -74,14 +74,14 @@ class ConditionEventRows(Sessions):
         event_id: str,
         *,
         by: Actor,
-        told_by: str | None = None,
+        on_behalf_of: str | None = None,
         reason: str,
         now_ns: int,
     ) -> ConditionEvent:
         """Let an event that was wrong count no more, as if nobody had told it; it is kept with the reason.
 
-        told_by: who says so, where it is another than who asks. Raises NotFoundError, StateConflictError (it
-        was withdrawn before, or is what the motors file tells).
+        on_behalf_of: whom they name as who says so. Raises NotFoundError, StateConflictError (it was
+        withdrawn before, or is what the motors file tells).
         """
         with self._write() as session:
             place = found(session, MotorRow, motor, "motor", lock=True)
@@ -92,12 +92,12 @@ class ConditionEventRows(Sessions):
                 present = "withdrawn" if row.withdrawn_ns is not None else "what the motors file tells"
                 raise StateConflictError("note", event_id, present=present, wanted="withdrawn")
             row.withdrawn_ns, row.withdrawn_reason = now_ns, storable(reason)
-            row.withdrawn_by = storable(told_by or by.name)
+            row.withdrawn_account, row.withdrawn_by = storable(by.name), storable(on_behalf_of or by.name)
             if row.kind is not EventKind.NOTE:
                 mark(session, motor, row.time_ns)
             if row.kind in RENEWING:
                 settle_start_alarms(session, place, now_ns=now_ns)
-            after = {"reason": reason, "told_by": row.withdrawn_by}
+            after = {"reason": reason, "on_behalf_of": on_behalf_of}
             note_change(
                 session,
                 by,
@@ -124,7 +124,9 @@ class ConditionEventRows(Sessions):
             return page_of(session, query, order, ConditionEvent, limit=limit, after=after, descending=True)
 
 
-def keep_event(session: Session, motor: str, event: Event, by: str, now_ns: int) -> ConditionEventRow:
+def keep_event(
+    session: Session, motor: str, event: Event, by: Actor, now_ns: int, *, on_behalf_of: str | None = None
+) -> ConditionEventRow:
     """Add an event of a motor that is locked, and have its condition follow."""
     row = ConditionEventRow(
         id=str(uuid.uuid4()),
@@ -132,7 +134,8 @@ def keep_event(session: Session, motor: str, event: Event, by: str, now_ns: int)
         time_ns=event.time_ns,
         kind=event.kind,
         reason=storable(event.reason),
-        by=storable(by),
+        account=storable(by.name),
+        by=storable(on_behalf_of or by.name),
         made_ns=now_ns,
     )
     session.add(row)
@@ -149,7 +152,7 @@ def _noted(row: ConditionEventRow) -> dict[str, object]:
         "kind": row.kind,
         "text": row.reason,
         "time": rfc3339(row.time_ns),
-        "told_by": row.by,
+        "on_behalf_of": record_of(ConditionEvent, row).on_behalf_of,
     }
 
 

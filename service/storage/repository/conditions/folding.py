@@ -29,9 +29,9 @@ from service.storage.records import (
     FoldResult,
 )
 from service.storage.repository.alarms.conditions import settle_alarm
-from service.storage.repository.alarms.drift import settle_drift_alarm
 from service.storage.repository.conditions.fold_input import fold_input
 from service.storage.repository.conditions.fold_marks import EARLIEST_NS, mark, others_of_bus, resume
+from service.storage.repository.conditions.motor_conditions import settle_motor_condition
 from service.storage.repository.conditions.observations import take_in_again
 from service.storage.repository.conditions.standing_changes import TOLD, is_material
 from service.storage.repository.conditions.tracking import write_tracked_points
@@ -158,6 +158,8 @@ class FoldingRows(Sessions):
         """
         done_ns = EARLIEST_NS if fold.checkpoint is None else fold.checkpoint.time_ns
         with self._write() as session:
+            # The motor first, as all who keep a diagnosis or alarms do: nobody waits for somebody who waits.
+            motor = found(session, MotorRow, fold.motor, "motor", lock=True)
             row = found(session, ConditionRow, fold.motor, "motor", lock=True)
             if row.version != fold.version:
                 return False
@@ -181,15 +183,15 @@ class FoldingRows(Sessions):
                 for name, value in values_of(result.condition).items():
                     if name not in ("motor", "version"):
                         setattr(row, name, value)
-                motor = found(session, MotorRow, fold.motor, "motor")
+                row.stator = result.condition.document
                 settle_alarm(session, motor, result.condition, now_ns=now_ns, rules=rules)
                 row.parameters = result.parameters
-                settle_drift_alarm(session, motor, result.parameters, now_ns=now_ns)
                 told = None if row.standing is None else row.standing.get(TOLD)
                 if is_material(told, result.standing):
                     told = result.standing
                     _mark_latest_of_bus(session, fold.motor)
                 row.standing = None if result.standing is None else {**result.standing, TOLD: told}
+                settle_motor_condition(session, row, now_ns=now_ns)
             return True
 
     def forget_checkpoints(self, motor: str) -> None:

@@ -3,7 +3,7 @@
 from dataclasses import fields
 from typing import Any, Final
 
-from sqlalchemy import Select, select
+from sqlalchemy import Select, func, select
 from sqlalchemy.orm import Session
 
 from core.rotor.finding import RotorFinding, RotorState
@@ -36,6 +36,14 @@ class RotorRows(Sessions):
         with self._read() as session:
             found(session, MotorRow, motor, "motor")
             return course_condition(session, motor)
+
+    def rotor_assessed_ns(self, motor: str) -> int | None:
+        """Return the time of a motor's latest recording that told of its rotor [ns UTC]; None without any."""
+        query = select(func.max(RotorFindingRow.time_ns)).where(
+            RotorFindingRow.motor == motor, RotorFindingRow.condition.is_not(None)
+        )
+        with self._read() as session:
+            return session.scalar(query)
 
     def rotor_trend(
         self,

@@ -130,8 +130,11 @@ class _Baseline:
     recording_ids: frozenset[str]
 
 
-def course_condition(session: Session, motor: str) -> RotorCondition:
-    """Return what all records of a motor say of its rotor together."""
+def course_condition(session: Session, motor: str, *, dates_healthy: bool = True) -> RotorCondition:
+    """Return what all records of a motor say of its rotor together.
+
+    dates_healthy: whether it is looked up since when a healthy rotor is so, too.
+    """
     baselines = _baselines(session, motor)
     latest = session.execute(_LATEST, {"of_motor": motor}).all()
     judged = [
@@ -142,13 +145,21 @@ def course_condition(session: Session, motor: str) -> RotorCondition:
         LoadBin(load_bin, records, baselines[load_bin].level_dB)
         for load_bin, records in sorted(session.execute(_OF_BINS, {"of_motor": motor}).all())
     ]
-    return rotor_condition(judged, since_ns(session, motor, state_after(judged)), bins)
+    state = state_after(judged)
+    is_dated = dates_healthy or state is not RotorState.HEALTHY
+    return rotor_condition(judged, since_ns(session, motor, state) if is_dated else None, bins)
 
 
 def latest_condition(session: Session, motor: str) -> RotorState | None:
     """Return the condition of a motor's rotor from its latest record on; None where none tells of it."""
     found: RotorState | None = session.scalar(_LATEST_CONDITION, {"of_motor": motor})
     return found
+
+
+def latest_time_ns(session: Session, motor: str) -> int | None:
+    """Return the time of a motor's latest record that tells of its rotor; None without any."""
+    latest = session.execute(_LATEST, {"of_motor": motor}).first()
+    return None if latest is None else latest.time_ns
 
 
 @contextmanager

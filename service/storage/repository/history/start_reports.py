@@ -14,6 +14,7 @@ from service.storage.records import ImportedStart, ReportedStart, ReportOutcome
 from service.storage.records.actors import Actor
 from service.storage.repository.alarms.starts import settle_start_alarms
 from service.storage.repository.audit.entries import note_change
+from service.storage.repository.conditions.motor_conditions import settle_beside_fold
 from service.storage.repository.history.start_documents import report_document, reported_start, start_row
 from service.storage.repository.sessions import Sessions, found
 from service.storage.states import StartSource
@@ -42,6 +43,7 @@ class StartReportRows(Sessions):
                 note_change(session, by, action, ("motor", motor), now_ns=now_ns, after=after)
             if is_new:
                 settle_start_alarms(session, row, now_ns=now_ns)
+                settle_beside_fold(session, motor, now_ns=now_ns)
             return imported
 
 

@@ -114,6 +114,11 @@ def forget_supply(session: Session, recording_id: str) -> None:
     session.execute(delete(SupplyFiguresRow).where(SupplyFiguresRow.recording_id == recording_id))
 
 
+def latest_figures(session: Session, motor: str, limit: int) -> tuple[SupplyFigures, ...]:
+    """Return what a motor's latest recordings show of its supply, oldest first."""
+    return tuple(one.figures for one in latest_of(session, _of_motor(motor), _ORDER, _entry, limit=limit))
+
+
 def _of_motor(motor: str) -> Select[*tuple[Any, ...]]:
     return select(*_ENTRY, *_FIGURES).where(SupplyFiguresRow.motor == motor)
 

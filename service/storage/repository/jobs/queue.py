@@ -35,7 +35,7 @@ from service.storage.records import ClaimedJob, Cursor, DiagnosisEntry, Job, Job
 from service.storage.records.actors import SERVICE, Actor
 from service.storage.repository.audit.entries import note_change
 from service.storage.repository.conditions.conditions import note_standstill
-from service.storage.repository.conditions.observations import keep_observation
+from service.storage.repository.conditions.observations import copied, keep_observation
 from service.storage.repository.history.rotor import keep_rotor_finding
 from service.storage.repository.history.starts import keep_start
 from service.storage.repository.history.supply import keep_supply
@@ -45,6 +45,7 @@ from service.storage.repository.jobs.steps import end_job, give_up_job, is_held,
 from service.storage.repository.recordings.baselines import baseline_rows
 from service.storage.repository.recordings.recordings import new_job, require_room
 from service.storage.repository.recordings.requests import diagnose_rows
+from service.storage.repository.recordings.series import OF_A_SERIES, is_counted_part
 from service.storage.repository.relays.clocks import withdraw_clock
 from service.storage.repository.sessions import Order, Sessions, found, only, page_of, record_of
 from service.storage.states import JobPriority, JobState, RecordingSource, RecordingState
@@ -202,6 +203,13 @@ class JobRows(Sessions):
             if not is_held(row, runner):
                 return False
             recording = found(session, RecordingRow, row.recording_id, "recording", lock=True)
+            if observation is not None:
+                copy_of = copied(session, recording.id, recording.motor, observation)
+                if copy_of is not None:
+                    observation, start, left_out = None, None, copy_of
+            remark = left_out
+            if observation is not None and is_counted_part(session, recording, recorded_ns):
+                observation, remark = None, OF_A_SERIES
             parts: dict[str, _Part | None] = {"rotor": rotor, "supply": supply}
             parts |= {"eccentricity": eccentricity, "pulsation": pulsation}
             document = _document(diagnosis, parts | {"classification": classification})
@@ -210,7 +218,7 @@ class JobRows(Sessions):
             session.add(_diagnosis_row(row, recording.motor, diagnosis, document, recorded_ns, now_ns))
             end_job(row, JobState.DONE, None, now_ns)
             recording.state = RecordingState.DIAGNOSED
-            recording.reason = None if left_out is None else storable(left_out)
+            recording.reason = None if remark is None else storable(remark)
             recording.recorded_ns = recorded_ns
             recording.operation = diagnosis.operation
             recording.operation_remark = None if operation_remark is None else storable(operation_remark)

@@ -5,17 +5,14 @@ from collections.abc import Mapping
 from sqlalchemy import or_, select
 from sqlalchemy.orm import Session, aliased
 
-from service.alarms.rotor_rules import KINDS
 from service.storage.models import AlarmRow, DiagnosisRow, IedRow, MotorRow
 from service.storage.models.alarms import in_state
-from service.storage.records import CallingAlarms, FleetMotor, LatestFigures, MotorEntry, StandingRotor
+from service.storage.records import CallingAlarms, FleetMotor, LatestFigures, MotorEntry
 from service.storage.repository.conditions.conditions import conditions_of
-from service.storage.repository.history.rotor_course import since_ns
 from service.storage.repository.sessions import Sessions, columns_of
 from service.storage.states import AlarmState
 
 CALLING = (AlarmState.UNACKNOWLEDGED, AlarmState.RETURNED_UNACKNOWLEDGED)
-OPEN_STATES = tuple(state for state in AlarmState if state is not AlarmState.NORMAL)
 
 
 class FleetRows(Sessions):
@@ -31,7 +28,6 @@ class FleetRows(Sessions):
             conditions = conditions_of(session)
             figures = {one.motor: one for one in latest_figures_of(session)}
             alarms = _calling(session)
-            rotors = _rotors(session)
             return tuple(
                 FleetMotor(
                     motor=MotorEntry(*entry),
@@ -40,7 +36,6 @@ class FleetRows(Sessions):
                     link_changed_ns=changed_ns,
                     figures=figures.get(entry[0]),
                     alarms=alarms.get(entry[0]),
-                    rotor=rotors.get(entry[0]),
                 )
                 for *entry, link, changed_ns in session.execute(query)
                 if entry[0] in conditions
@@ -83,13 +78,3 @@ def _calling(session: Session) -> Mapping[str, CallingAlarms]:
             # The last one is the most urgent, and the latest of those.
             found[motor] = CallingAlarms(number, urgency, alarm, priority, raised_ns)
     return found
-
-
-def _rotors(session: Session) -> Mapping[str, StandingRotor]:
-    """Return each rotor that somebody has to look after, in the state of its standing alarm."""
-    state_of = {kind: state for state, kind in KINDS.items()}
-    query = select(AlarmRow.motor, AlarmRow.kind).where(
-        or_(*map(in_state, OPEN_STATES)), AlarmRow.kind.in_(tuple(state_of)), AlarmRow.cleared_ns.is_(None)
-    )
-    states = {motor: state_of[kind] for motor, kind in session.execute(query) if motor is not None}
-    return {motor: StandingRotor(state, since_ns(session, motor, state)) for motor, state in states.items()}

@@ -50,7 +50,7 @@ class BaselineRows(Sessions):
         *,
         by: Actor,
         reason: str | None = None,
-        told_by: str | None = None,
+        on_behalf_of: str | None = None,
         now_ns: int,
     ) -> BaselineEntry:
         """Replace the motor's baseline by these recordings.
@@ -58,8 +58,8 @@ class BaselineRows(Sessions):
         It is used for diagnoses that begin from now on. A reason is also kept as a note of the motor, where
         it stays when the baseline is replaced.
 
-        reason: why the recordings stand for health; needed where one is in doubt. told_by: who says so, where
-        it is another than who asks.
+        reason: why the recordings stand for health; needed where one is in doubt. on_behalf_of: whom they
+        name as who says so.
         Raises NotFoundError (for another motor's recording too), UnusableBaselineError (one that is not
         diagnosed, or was refused), DoubtfulBaselineError.
         """
@@ -77,7 +77,8 @@ class BaselineRows(Sessions):
                     motor=motor,
                     chosen_ns=now_ns,
                     reason=None if reason is None else storable(reason),
-                    by=storable(told_by or by.name),
+                    account=storable(by.name),
+                    by=storable(on_behalf_of or by.name),
                 )
             )
             session.add_all(
@@ -85,7 +86,8 @@ class BaselineRows(Sessions):
                 for one, cause in causes.items()
             )
             if reason is not None:
-                keep_event(session, motor, _note(now_ns, chosen, doubts, reason), told_by or by.name, now_ns)
+                note = _note(now_ns, chosen, doubts, reason)
+                keep_event(session, motor, note, by, now_ns, on_behalf_of=on_behalf_of)
             session.flush()
             entry = _entry(session, motor)
             subject = ("motor", motor)
@@ -100,7 +102,7 @@ class BaselineRows(Sessions):
         *,
         by: Actor,
         reason: str | None = None,
-        told_by: str | None = None,
+        on_behalf_of: str | None = None,
         now_ns: int,
     ) -> None:
         """Delete the motor's baseline, if it has one; its recordings stay.
@@ -116,7 +118,8 @@ class BaselineRows(Sessions):
             _delete(session, motor)
             what = f"baseline of {len(baseline.recordings)} recordings deleted"
             note = what if reason is None else f"{what}: {reason}"
-            keep_event(session, motor, Event(now_ns, EventKind.NOTE, note), told_by or by.name, now_ns)
+            event = Event(now_ns, EventKind.NOTE, note)
+            keep_event(session, motor, event, by, now_ns, on_behalf_of=on_behalf_of)
             note_change(
                 session,
                 by,
@@ -124,7 +127,7 @@ class BaselineRows(Sessions):
                 ("motor", motor),
                 now_ns=now_ns,
                 before=_noted(baseline),
-                after={"reason": reason, "told_by": told_by},
+                after={"reason": reason, "on_behalf_of": on_behalf_of},
             )
 
 
@@ -152,6 +155,7 @@ def _entry(session: Session, motor: str) -> BaselineEntry:
         recordings=tuple(record_of(RecordingEntry, one) for one in baseline_rows(session, motor)),
         chosen_ns=row.chosen_ns,
         reason=row.reason,
+        account=row.account,
         by=row.by,
         doubts=tuple(record_of(BaselineDoubt, one) for one in session.scalars(doubtful)),
     )
@@ -162,7 +166,7 @@ def _noted(baseline: BaselineEntry) -> dict[str, object] | None:
     if baseline.chosen_ns is None:
         return None
     ids = [recording.id for recording in baseline.recordings]
-    return {"recordings": ids, "reason": baseline.reason, "told_by": baseline.by}
+    return {"recordings": ids, "reason": baseline.reason, "on_behalf_of": baseline.on_behalf_of}
 
 
 def _delete(session: Session, motor: str) -> None:

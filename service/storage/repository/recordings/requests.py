@@ -11,7 +11,14 @@ from sqlalchemy.orm import Session
 
 from service.audit.actions import AuditAction
 from service.storage.errors import OutOfServiceError, StateConflictError, TooManyWaitingError
-from service.storage.models import IedRow, LeaseRow, MotorRow, RecordingRequestRow, StateCountRow
+from service.storage.models import (
+    IedRow,
+    LeaseRow,
+    MotorRow,
+    RecordingRequestRow,
+    RecordingRow,
+    StateCountRow,
+)
 from service.storage.records import Cursor, Page, RecordingRequest
 from service.storage.records.actors import SERVICE, Actor
 from service.storage.repository.audit.entries import note_change
@@ -221,6 +228,28 @@ class RecordingRequestRows(Sessions):
                 row.triggered_ns = now_ns
                 row.triggers = triggers
             return recording_request(row)
+
+    def preceding_offset_ns(self, relay: str, triggered_ns: int) -> int | None:
+        """Return how far the time of the relay's record was from its trigger, the time before [ns].
+
+        relay: its name.  triggered_ns: trigger of the present record.  None where there is no earlier one.
+        """
+        offset = RecordingRow.recorded_ns - RecordingRequestRow.triggered_ns
+        query = (
+            select(offset)
+            .select_from(RecordingRequestRow)
+            .join(RecordingRow, RecordingRow.id == RecordingRequestRow.recording_id)
+            .where(
+                RecordingRequestRow.ied == relay,
+                RecordingRequestRow.state == RecordingRequestState.DIAGNOSED,
+                RecordingRequestRow.triggered_ns < triggered_ns,
+                offset.is_not(None),
+            )
+            .order_by(RecordingRequestRow.requested_ns.desc())
+            .limit(1)
+        )
+        with self._read() as session:
+            return session.scalar(query)
 
     def mark_recorded(self, request_id: str, *, now_ns: int) -> RecordingRequest:
         """Note that the relay reported the record. Raises NotFoundError, StateConflictError."""

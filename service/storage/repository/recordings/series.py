@@ -1,13 +1,13 @@
 """Series of recordings that were asked for as one, and the recordings joined from them."""
 
-from sqlalchemy import select, update
-from sqlalchemy.orm import Session
+from sqlalchemy import exists, or_, select, update
+from sqlalchemy.orm import Session, aliased
 
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
 from core.operation import EXPECTED
 from core.units import NANOSECONDS_PER_DAY, NANOSECONDS_PER_SECOND
 from service.recording_store.recording import StoredRecording
-from service.storage.models import MotorRow, RecordingRequestRow, RecordingRow
+from service.storage.models import MotorRow, ObservationRow, RecordingRequestRow, RecordingRow
 from service.storage.records import Series, SeriesEnd, SeriesHistory
 from service.storage.repository.recordings.folders import discard_folder, require_folder
 from service.storage.repository.recordings.recordings import brought, fill, new_job, stored_before
@@ -24,6 +24,9 @@ MOST_TRIED = 20
 """So many series of a motor are looked back at."""
 LOOKED_AT = 100
 """Recordings among which one with a length is looked for."""
+LONGEST_S = 30.0
+"""No series is longer."""
+OF_A_SERIES = "of a series, of which another recording counts in the motor's condition"
 BESIDE_NS = 2 * NANOSECONDS_PER_SECOND
 """Records of a series have times within its length and so much more."""
 
@@ -127,6 +130,48 @@ class SeriesRows(Sessions):
             if source is RecordingSource.RELAY and duration_s is not None and before_s is not None:
                 return duration_s, before_s
         return None
+
+
+def is_counted_part(session: Session, recording: RecordingRow, recorded_ns: int) -> bool:
+    """Tell whether a recording is of a series of which another one counts in the motor's condition.
+
+    What overlaps, or follows within seconds, is not more evidence: it would narrow intervals falsely.
+    """
+    if recording.ied is None:
+        return False
+    first = aliased(RecordingRow)
+    longest_ns = round(LONGEST_S * NANOSECONDS_PER_SECOND) + BESIDE_NS
+    query = (
+        select(RecordingRequestRow.seconds, RecordingRequestRow.recording_id, first.recorded_ns)
+        .join(first, first.id == RecordingRequestRow.recording_id)
+        .where(
+            RecordingRequestRow.motor == recording.motor,
+            RecordingRequestRow.ied == recording.ied,
+            RecordingRequestRow.seconds.is_not(None),
+            or_(
+                first.id == recording.id,
+                first.recorded_ns.between(recorded_ns - longest_ns, recorded_ns),
+                # The first one waits for its diagnosis, which tells its time.
+                first.recorded_ns.is_(None) & (RecordingRequestRow.triggered_ns <= recording.announced_ns),
+            ),
+        )
+    )
+    for seconds, first_id, first_ns in session.execute(query):
+        length_ns = round((seconds or 0.0) * NANOSECONDS_PER_SECOND) + BESIDE_NS
+        begin_ns = recorded_ns if first_id == recording.id else first_ns
+        if begin_ns is None:
+            begin_ns, length_ns = recorded_ns - length_ns, 2 * length_ns
+        end_ns = begin_ns + length_ns
+        counted = exists().where(
+            ObservationRow.motor == recording.motor,
+            ObservationRow.time_ns.between(begin_ns, end_ns),
+            ObservationRow.recording_id == RecordingRow.id,
+            RecordingRow.id != recording.id,
+            RecordingRow.ied == recording.ied,
+        )
+        if recorded_ns <= end_ns and session.scalar(select(counted)):
+            return True
+    return False
 
 
 def _series(session: Session, request: RecordingRequestRow) -> Series | None:

@@ -20,7 +20,7 @@ from service.storage.repository.relays.links import change_links, locked_relays
 from service.storage.repository.sessions import Sessions
 from service.storage.states import LinkState
 
-GATEWAY_GONE = "the gateway that visited this relay ended; another takes over"
+GATEWAY_GONE = "service restarting: another gateway visits this relay soon"
 
 _LEASES = select(LeaseRow.ied, LeaseRow.gateway)
 

@@ -1,10 +1,8 @@
 // What every page has: times in the viewer's zone, ages that go on, drafts, and words when the service is away.
 
-const MINUTE_MS = 60_000;
+import { clock, offset } from "./clock.js";
 
-const local = new Intl.DateTimeFormat(undefined, {
-  year: "numeric", month: "2-digit", day: "2-digit", hour: "2-digit", minute: "2-digit", second: "2-digit", hourCycle: "h23",
-});
+const MINUTE_MS = 60_000;
 
 function ageInWords(ms) {
   const seconds = Math.abs(ms) / 1000;
@@ -15,15 +13,12 @@ function ageInWords(ms) {
   return whole === 1 ? "1 second" : `${whole} seconds`;
 }
 
-function inParts(date, hasSeconds) {
-  const part = Object.fromEntries(local.formatToParts(date).map(({ type, value }) => [type, value]));
-  return `${part.year}-${part.month}-${part.day} ${part.hour}:${part.minute}${hasSeconds ? `:${part.second}` : ""}`;
-}
-
-/** Write the times below an element in the viewer's zone; UTC stays in their titles. */
+/** Write the times below an element in the viewer's zone; their titles have its offset, and UTC. */
 export function localise(root) {
   for (const element of root.querySelectorAll("time[data-local]")) {
-    element.textContent = inParts(new Date(element.dateTime), element.dataset.local === "seconds");
+    const [date, hasSeconds] = [new Date(element.dateTime), element.dataset.local === "seconds"];
+    element.textContent = clock(date, hasSeconds);
+    element.title = `${clock(date, hasSeconds)} ${offset(date)} (${element.title})`;
     delete element.dataset.local;
   }
   for (const element of root.querySelectorAll("time[data-age]")) {

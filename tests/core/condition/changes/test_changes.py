@@ -8,7 +8,7 @@ import pytest
 from core.condition.assessment import Change
 from core.condition.following.follower import Follower
 from core.condition.kinds import Kind, State
-from core.condition.verdict.condition import condition_of
+from core.condition.verdict.judging import condition_of
 from core.machines.parameters import Connection
 from core.machines.winding_frame import terminal_winding
 from core.signals.sequence import PhaseSequence

@@ -7,7 +7,8 @@ import pytest
 from core.condition.changes.alarm import KINDS, Alarm, Weighing, confirm
 from core.condition.following.follower import Follower
 from core.condition.kinds import Kind, State
-from core.condition.verdict.condition import Condition, condition_of
+from core.condition.verdict.condition import Condition
+from core.condition.verdict.judging import condition_of
 from tests.core.condition.simulated import Plant, motor_of
 
 BEFORE, BETWEEN = 60, 80

@@ -9,7 +9,8 @@ from core.condition.events import Event, EventKind
 from core.condition.filter.state import FILTER
 from core.condition.following.follower import Follower
 from core.condition.kinds import Kind, State
-from core.condition.verdict.condition import Condition, condition_of
+from core.condition.verdict.condition import Condition
+from core.condition.verdict.judging import condition_of
 from tests.core.condition.simulated import Plant, follow, motor_of
 
 
@@ -78,7 +79,7 @@ def test_a_fault_that_comes_back_is_a_fault_again() -> None:
 def test_a_note_ends_what_is_gone(kind: EventKind) -> None:
     plant = Plant(seed=3)
     follower = with_fault(plant, 40)
-    assert told(follower, plant, 20)[-1].kind is Kind.UNCLEAR
+    assert told(follower, plant, 20)[-1].kind is Kind.SHORTED_TURNS
     follower.apply(Event(plant.time_ns, kind, "coil replaced"))
     assert told(follower, plant, 20)[-1].state is State.HEALTHY
 
@@ -104,7 +105,7 @@ def test_what_has_only_become_smaller_is_not_gone() -> None:
 
 
 def test_a_record_counts_for_both_as_its_distance_tells() -> None:
-    level = Level(0.01, 0.001, 0, 1.0)
+    level = Level(0.01, 0.001, 0)
     change = Change(0, 0, {}, (Kind.SHORTED_TURNS,), level, None, None)
     state = np.zeros(1, FILTER).view(np.recarray)[0]
     state.R = 1e-8

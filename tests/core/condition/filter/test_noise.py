@@ -21,7 +21,7 @@ def test_noise_is_learnt_from_few_records_though_temperature_explains_some(claim
     for _ in range(60):
         noise = np.sqrt(true / 2.0) * complex(*random.normal(size=2))
         predict(state, 3600.0)
-        update(state, 0.08 * random.normal() * j2 + noise, 0.5 + 0j, j2, bounded=False)
+        update(state, 0.08 * random.normal() * j2 + noise, 0.5 + 0j, j2, bounded=False, changed_by=(0.0, 0.0))
         learn_noise(state)
         state.records += 1.0
     assert 0.5 < state.s2 / true < 2.0

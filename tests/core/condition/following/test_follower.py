@@ -12,7 +12,7 @@ from core.condition.events import Event, EventKind
 from core.condition.following.follower import Follower
 from core.condition.kinds import State
 from core.condition.observation import Observation, VoltageChannels
-from core.condition.verdict.condition import condition_of
+from core.condition.verdict.judging import condition_of
 from core.machines.parameters import MachineParameters, Motor, Nameplate
 from core.signals.sequence import PhaseSequence
 

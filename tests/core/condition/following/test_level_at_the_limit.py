@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from core.condition.following.follower import Follower
 from core.condition.kinds import State
-from core.condition.verdict.condition import condition_of
+from core.condition.verdict.judging import condition_of
 from tests.core.condition.simulated import Plant, follow, motor_of
 
 

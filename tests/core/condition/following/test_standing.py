@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from core.condition.assessment import Assessment
 from core.condition.events import Event, EventKind
 from core.condition.following.follower import Follower
 from core.condition.following.standing import (
@@ -17,20 +18,27 @@ from core.condition.following.standing import (
 )
 from core.condition.following.standing_errors import StandingErrors
 from core.condition.kinds import Kind, State
-from core.condition.measuring.signatures import PATHS, shorted_turns
-from core.condition.verdict.condition import condition_of
+from core.condition.measuring.turns_grid import FINE, ROUGH, turns_grid
+from core.condition.verdict.judging import condition_of
+from core.diagnosis.channel_errors import A
 from core.machines.sensors import SensorClass
+from core.signals.sequence import PhaseSequence
 from tests.core.condition.simulated import Plant, follow, motor_of
 
 
-@pytest.mark.parametrize("path", PATHS)
+@pytest.mark.parametrize("leakage", [0.05, 0.2, 0.5, 0.9])
+@pytest.mark.parametrize("axis_deg", [-20.0, 0.0, 16.0])
 @pytest.mark.parametrize("astray", [1.5, -1.5])
-def test_the_interval_holds_the_level_whatever_the_path(path: float, astray: float) -> None:
+def test_the_interval_holds_the_level_whatever_axis_and_leakage(
+    leakage: float, axis_deg: float, astray: float
+) -> None:
     motor, deviation = motor_of(), 0.003
-    u = 0.03 * shorted_turns(motor, 1, path)
+    grid, known = (turns_grid(motor, PhaseSequence.ABC, 25.0, steps) for steps in (FINE, ROUGH))
+    node = int(np.argmin(np.abs(grid.axis_rad - np.radians(axis_deg)) * 10 + np.abs(grid.leakage - leakage)))
+    u = 0.03 * A * complex(grid.y[node])
     across = 1j * u / abs(u) * astray * deviation
     asymmetry = np.array([(u + across).real, (u + across).imag])
-    standing = standing_of(motor, asymmetry, deviation**2 * np.eye(2), from_bus=False)
+    standing = standing_of(known, asymmetry, deviation**2 * np.eye(2), from_bus=False)
     low, high = standing.interval
     assert low < 0.03 < high
     assert low <= standing.level <= high
@@ -73,20 +81,28 @@ def test_a_fault_that_grows_on_a_constant_supply_does_not_come_to_stand() -> Non
         assert assessment.reference.standing_score < 3.2
 
 
+def assessed(follower: Follower) -> Assessment:
+    assessment = follower.assessment()
+    assert assessment is not None
+    return assessment
+
+
 def test_a_called_fault_does_not_fade_while_a_second_change_is_not_yet_seen() -> None:
     motor = replace(motor_of(), sensors=SensorClass(0.005, 0.005, 10e-6, 10e-6))
     plant = Plant(level=0.04, noise=5e-4)
     follower = follow(motor, plant.records(60))
+    called = condition_of(motor, assessed(follower), 0)
+    assert called.mu_f is not None
     plant.joint_ohm, plant.joint = 6.0, 1
     for record in plant.records(15):
         follower.fold(record)
-        assessment = follower.assessment()
-        assert assessment is not None
-        condition = condition_of(motor, assessment, record.time_ns)
+        condition = condition_of(motor, assessed(follower), record.time_ns)
         assert (condition.state, condition.phase) == (State.FAULT, "a")
-        assert condition.mu_f == pytest.approx(0.04, rel=0.2)
-    assert assessment is not None
-    assert assessment.change is not None, "the second change is seen by now"
+        assert condition.mu_f == pytest.approx(called.mu_f, rel=0.2)
+        assert condition.mu_f_ci95 is not None
+        low, high = condition.mu_f_ci95
+        assert low < plant.level < high
+    assert assessed(follower).change is not None, "the second change is seen by now"
 
 
 @pytest.mark.parametrize("unbalance", [0.009 + 0.008j, 0.03j])
@@ -186,13 +202,13 @@ def test_a_fault_that_was_called_is_one_no_more_where_all_of_it_lies_below_the_l
 
 
 def test_a_standing_fault_is_kept_as_it_was_told_surest() -> None:
-    motor = motor_of()
     errors = StandingErrors(0.01, 0.0, [1e-6, 0.0, 1e-6], [1e-6, 0.0, 1e-6], 0.0, 0.0, 0, 1)
-    score = score_of(motor, errors)
-    called = surest(motor, errors, score, None)
+    grid = turns_grid(motor_of(), PhaseSequence.ABC, 25.0, ROUGH)
+    score = score_of(grid, errors)
+    called = surest(grid, errors, score, None)
     assert called is not None
-    assert surest(motor, errors, STANDING_SCORE - 0.1, None) is None
-    assert surest(motor, errors, score - 0.1, called) is called
+    assert surest(grid, errors, STANDING_SCORE - 0.1, None) is None
+    assert surest(grid, errors, score - 0.1, called) is called
 
 
 @pytest.mark.parametrize(("score", "before", "after"), [(3.0, 3.3, 3.3), (3.0, 3.9, 3.5), (3.0, 0.0, 3.0)])

@@ -8,7 +8,8 @@ import pytest
 from numpy.typing import NDArray
 
 from core.condition.assessment import Level
-from core.condition.forecast.forecast import Forecast, forecast, limit_ahead
+from core.condition.forecast.forecast import forecast, limit_ahead
+from core.condition.forecast.outcome import Forecast
 from core.units import NANOSECONDS_PER_DAY
 
 Array = NDArray[np.float64]
@@ -117,8 +118,8 @@ def test_what_stands_brings_the_limit_nearer_and_doubt_widens() -> None:
         (k * NANOSECONDS_PER_DAY // 24, 1e-5 * k + NOISE * float(rng.standard_normal())) for k in range(200)
     ]
     alone, beside = forecast(levels, LIMIT).days, forecast(levels, LIMIT, standing=0.002).days
-    sure = forecast(levels, LIMIT, today=Level(1e-5 * 199, 1e-6, 0, 0.0)).days
-    doubtful = forecast(levels, LIMIT, today=Level(1e-5 * 199, 3e-4, 0, 0.0)).days
+    sure = forecast(levels, LIMIT, today=Level(1e-5 * 199, 1e-6, 0)).days
+    doubtful = forecast(levels, LIMIT, today=Level(1e-5 * 199, 3e-4, 0)).days
     assert alone is not None
     assert beside is not None
     assert sure is not None
@@ -126,7 +127,7 @@ def test_what_stands_brings_the_limit_nearer_and_doubt_widens() -> None:
     assert beside[1] == pytest.approx(alone[1] - 200.0 / PER_DAY, abs=1.5)
     assert sure == pytest.approx(alone, rel=0.1)
     assert doubtful[0] < alone[0] < alone[2] < doubtful[2]
-    smaller = forecast(levels, LIMIT, today=Level(0.5e-5 * 199, 1e-6, 0, 0.0))
+    smaller = forecast(levels, LIMIT, today=Level(0.5e-5 * 199, 1e-6, 0))
     assert smaller.days is not None
     assert smaller.days[1] == pytest.approx((LIMIT / 0.5e-5 - 199.0) / PER_DAY, rel=0.1)
     assert smaller.growth_per_day == pytest.approx(0.5e-5 * PER_DAY, rel=0.1)
@@ -180,9 +181,9 @@ def test_growth_that_has_stopped_shows_no_trend_any_more() -> None:
 
 def test_the_interval_of_today_s_level_is_that_of_the_time() -> None:
     levels = [(k * NANOSECONDS_PER_DAY // 24, 1e-5 * k) for k in range(201)]
-    likely = forecast(levels, LIMIT, today=Level(0.002, 1e-6, 0, 0.0)).days
-    less = forecast(levels, LIMIT, today=Level(0.002, 4e-4, 0, 0.0, (0.001, 0.002))).days
-    more = forecast(levels, LIMIT, today=Level(0.002, 4e-4, 0, 0.0, (0.002, 0.004))).days
+    likely = forecast(levels, LIMIT, today=Level(0.002, 1e-6, 0)).days
+    less = forecast(levels, LIMIT, today=Level(0.002, 4e-4, 0, (0.001, 0.002))).days
+    more = forecast(levels, LIMIT, today=Level(0.002, 4e-4, 0, (0.002, 0.004))).days
     assert likely is not None
     assert less is not None
     assert more is not None

@@ -6,10 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from core.condition.measuring.measurement import negative_impedance
+from core.condition.measuring.impedance import negative_impedance
 from core.condition.measuring.observing import examine, observe
 from core.condition.observation import VoltageChannels
 from core.diagnosis.stator import diagnose
+from core.diagnosis.verdict import Verdict
 from core.machines.parameters import Connection, MachineParameters, Motor
 from core.recordings import Channel, Quantity, Recording, read
 from core.recordings.comtrade.writer import write
@@ -92,7 +93,7 @@ def test_the_scatter_is_that_of_y() -> None:
     for seed in range(40):
         seen = observe(recording(truth, noise=0.01, sample_rate_hz=2_000.0, seed=seed), REFERENCE)
         assert seen is not None
-        Z2 = negative_impedance(REFERENCE.parameters, seen.frequency_hz)
+        Z2 = negative_impedance(REFERENCE, seen.frequency_hz)
         y.append((seen.negative_voltage_V - Z2 * seen.negative_current_A) / seen.positive_voltage_V)
         claimed.append(seen.scatter)
     assert np.mean(claimed) == pytest.approx(float(np.var(y, ddof=1)), rel=0.4)
@@ -100,7 +101,7 @@ def test_the_scatter_is_that_of_y() -> None:
 
 def test_what_the_supply_does_within_a_record_is_no_scatter() -> None:
     """An unbalance that wanders is answered by the motor, and cancels in y."""
-    Z2 = negative_impedance(REFERENCE.parameters, 50.0)
+    Z2 = negative_impedance(REFERENCE, 50.0)
     truth, record = running(REFERENCE, 0.6), recording(running(REFERENCE, 0.6), noise=1e-4)
     t = np.arange(record.samples.shape[1]) / record.sample_rate_hz
     wander = 0.01 * abs(truth.phase_voltage[0]) * np.sin(2.0 * np.pi * 3.0 * t)
@@ -184,5 +185,6 @@ def test_a_record_counts_even_where_no_fit_comes_near_it() -> None:
     machine = REFERENCE.parameters
     other = replace(machine, stator_resistance_ohm=8.0 * machine.stator_resistance_ohm)
     examined = examine(record, replace(REFERENCE, parameters=other))
-    assert [one.name for one in examined.diagnosis.quality if not one.passed] == ["identifiability"]
+    assert examined.diagnosis.verdict is Verdict.WATCH
+    assert examined.diagnosis.reasons[0].startswith("the parameters do not fit")
     assert examined.observation is not None

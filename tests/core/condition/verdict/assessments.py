@@ -5,7 +5,8 @@ from dataclasses import replace
 
 from core.condition.assessment import Assessment, Change, Level, Reference
 from core.condition.kinds import Kind
-from core.condition.verdict.condition import Condition, condition_of
+from core.condition.verdict.condition import Condition
+from core.condition.verdict.judging import condition_of
 from core.machines.winding_frame import Winding
 from core.units import NANOSECONDS_PER_DAY
 from testing.machines.motors import REFERENCE as MOTOR
@@ -15,7 +16,8 @@ SINCE_NS = AS_OF_NS - 3 * NANOSECONDS_PER_DAY
 
 
 def level(value: float, deviation: float = 0.0005, winding: Winding = 1) -> Level:
-    return Level(value, deviation, winding, path_ratio=0.5)
+    phases = (float(winding == 0), float(winding == 1), float(winding == 2))
+    return Level(value, deviation, winding, phases=phases)
 
 
 def reference(

@@ -10,8 +10,9 @@ from hypothesis import strategies as st
 from core.condition.assessment import STALE_AFTER_NS, Assessment, Change, Declared, Level, Reference
 from core.condition.events import Event, EventKind
 from core.condition.filter.state import START
-from core.condition.kinds import Kind, State
-from core.condition.verdict.condition import Condition, condition_of
+from core.condition.kinds import BESIDE_STATOR, Kind, State
+from core.condition.verdict.condition import Condition
+from core.condition.verdict.judging import condition_of
 from core.machines.parameters import ParametersSource
 from core.units import NANOSECONDS_PER_DAY
 from testing.machines.motors import REFERENCE as MOTOR
@@ -192,9 +193,14 @@ def test_a_level_that_grows_has_a_forecast() -> None:
     assert above.forecast.limit == 0.02
 
 
-KINDS = st.sampled_from([kind for kind in Kind if kind is not Kind.NONE])
+KINDS = st.sampled_from([kind for kind in Kind if kind not in {Kind.NONE, *BESIDE_STATOR}])
+SURE = {0: (0.98, 0.01, 0.01), 1: (0.01, 0.98, 0.01), 2: (0.0, 0.04, 0.96)}
 LEVELS = st.builds(
-    Level, st.floats(-0.01, 0.3), st.floats(1e-6, 0.05), st.sampled_from([0, 1, 2]), st.floats(0, 4)
+    lambda value, deviation, winding, axis: Level(value, deviation, winding, None, SURE[winding], axis),
+    st.floats(-0.01, 0.3),
+    st.floats(1e-6, 0.05),
+    st.sampled_from([0, 1, 2]),
+    st.none() | st.floats(-30.0, 30.0),
 )
 CHANGES = st.builds(
     Change,
@@ -262,3 +268,16 @@ def test_what_is_told_agrees_with_itself(found: Assessment) -> None:
     assert condition.state is not State.FAULT or condition.phase is not None
     assert condition.state is not State.HEALTHY or condition.mu_f <= MOTOR.limits.fault_level
     assert condition.reasons
+
+
+def test_turns_that_lie_in_one_of_two_phases_are_told_with_both() -> None:
+    open_phase = Level(0.02, 0.0005, 0, phases=(0.717, 0.003, 0.28))
+    found = judged(assessment(change(Kind.SHORTED_TURNS, size=open_phase)))
+    assert (found.state, found.kind, found.phase) == (State.FAULT, Kind.SHORTED_TURNS, None)
+    assert found.phase_probabilities == (0.717, 0.003, 0.28)
+    assert any(
+        reason.startswith("shorted turns in phase a (72 %) or c (28 %) since") for reason in found.reasons
+    )
+    assert "of phase" not in found.advice
+    again = Condition.from_dict(found.as_dict())
+    assert (again.phase, again.phase_probabilities) == (None, (0.717, 0.003, 0.28))

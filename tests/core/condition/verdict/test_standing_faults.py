@@ -6,7 +6,7 @@ import pytest
 
 from core.condition.assessment import Change, Declared
 from core.condition.kinds import Kind, State
-from core.condition.verdict.condition import condition_of
+from core.condition.verdict.judging import condition_of
 from testing.machines.motors import REFERENCE as MOTOR
 from tests.core.condition.verdict.assessments import (
     AS_OF_NS,
@@ -40,7 +40,7 @@ def test_a_standing_asymmetry_that_a_person_declared_healthy_is_left() -> None:
     condition = judged(assessment(reference=accepted))
     assert (condition.state, condition.mu_f) == (State.HEALTHY, 0.0)
     assert condition.mu_f_ci95 == (0.0, accepted.standing.ci95[1])
-    assert any("would be in phase b: 1.20 %" in reason for reason in condition.reasons)
+    assert any("as shorted turns in phase b: 1.20 %" in reason for reason in condition.reasons)
     declared = replace(accepted, declared=Declared(0.032, (0.02, 0.04), "c"))
     told = judged(assessment(reference=declared))
     assert any("until then" in reason and "phase c: 3.20 %" in reason for reason in told.reasons)

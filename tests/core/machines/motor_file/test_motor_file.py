@@ -34,7 +34,7 @@ rated_voltage_V = 380
 rated_frequency_Hz = 50
 pole_pairs = 2
 connection = "delta"
-rotor_slots = 28
+rotor_bars = 28
 
 [parameters]
 stator_resistance_ohm = 8.4

@@ -34,7 +34,8 @@ def test_a_motor_has_a_cage_unless_its_file_says_otherwise() -> None:
 def test_the_plate_of_a_wound_rotor_is_read() -> None:
     motor = _motor(ROTOR + "rated_speed_rpm = 1464\n[rotor_circuit]\nexternal_resistance_ohm = [0, 0.35]")
     assert motor.kind is MachineKind.WOUND_ROTOR
-    assert motor.wound_rotor == WoundRotor(240.0, 98.0, 1464.0, (0.0, 0.35))
+    assert motor.wound_rotor == WoundRotor(240.0, 98.0, (0.0, 0.35))
+    assert motor.nameplate.rated_speed_rpm == 1464.0
 
 
 def test_one_resistance_is_a_known_one() -> None:

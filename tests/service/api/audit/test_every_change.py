@@ -5,10 +5,14 @@ from collections.abc import Iterator
 import pytest
 
 from service.api import create_app
+from testing.service.accounts import auditor
 from tests.core.relay_reports.examples import MSR
 from tests.service.audited import API, MOTOR, PASSWORD, SHELVED, Changes, Prepared, audited_service, sent
 
 CHANGING = {"post", "put", "patch", "delete"}
+
+AGAIN = {"password": PASSWORD}
+
 
 REQUESTS: Changes = {
     "POST /api/v1/motors/{name}/event-reports": (
@@ -92,6 +96,26 @@ REQUESTS: Changes = {
     "POST /api/v1/login": (lambda it: it.login(), "logged-in"),
     "POST /api/v1/logout": (lambda it: it.logout(), "logged-out"),
     "PUT /api/v1/account/password": (lambda it: it.other_password(), "password-set"),
+    "POST /api/v1/account/totp": (
+        lambda it: it.in_session(f"{API}/account/totp", json=AGAIN),
+        "second-factor-begun",
+    ),
+    "POST /api/v1/account/totp/confirmation": (
+        lambda it: it.in_session(f"{API}/account/totp/confirmation", code=True, json=AGAIN),
+        "second-factor-added",
+    ),
+    "POST /api/v1/account/recovery-codes": (
+        lambda it: it.in_session(f"{API}/account/recovery-codes", with_app=True, json=AGAIN),
+        "recovery-codes-made",
+    ),
+    "POST /api/v1/account/second-factor/removal": (
+        lambda it: it.in_session(f"{API}/account/second-factor/removal", with_app=True, json=AGAIN),
+        "second-factor-removed",
+    ),
+    "POST /api/v1/users/{name}/second-factor/reset": (
+        lambda it: it.client.post(f"{it.user()}/second-factor/reset"),
+        "second-factor-reset",
+    ),
     "POST /api/v1/account/tokens": (
         lambda it: it.client.post(f"{API}/account/tokens", json={"label": "a test"}),
         "token-added",
@@ -122,9 +146,13 @@ REQUESTS: Changes = {
     ),
     "DELETE /api/v1/users/{name}/lock": (lambda it: it.client.delete(f"{it.user()}/lock"), "user-unlocked"),
     "DELETE /api/v1/users/{name}": (lambda it: it.client.delete(it.user()), "user-deleted"),
-    "POST /api/v1/users/{name}/tokens": (
-        lambda it: it.client.post(f"{it.user()}/tokens", json={"label": "a test"}),
-        "token-added",
+    "DELETE /api/v1/account/tokens": (
+        lambda it: it.client.delete(f"{API}/account/tokens", headers=it.somebody()),
+        "tokens-revoked",
+    ),
+    "DELETE /api/v1/users/{name}/tokens": (
+        lambda it: it.client.delete(it.user_with_token() + "/tokens"),
+        "tokens-revoked",
     ),
 }
 
@@ -151,8 +179,11 @@ def test_a_changing_route_leaves_an_entry(prepared: Prepared, route: str) -> Non
 
 
 def test_a_route_that_reads_leaves_none(prepared: Prepared) -> None:
-    before = prepared.client.get(f"{API}/audit/head").json()
+    reads = auditor(prepared.repository)
+    before = prepared.client.get(f"{API}/audit/head", headers=reads).json()
     document = prepared.client.get(f"{API}/openapi.json").json()
     for path in document["paths"]:
-        prepared.client.get(path.replace("{name}", "PUMP-A1"))
-    assert prepared.client.get(f"{API}/audit/head").json() == before
+        headers = reads if path.startswith(f"{API}/audit/") else {}
+        answer = prepared.client.get(path.replace("{name}", "PUMP-A1"), headers=headers)
+        assert answer.status_code != 403, f"{path}: a refusal leaves an entry"
+    assert prepared.client.get(f"{API}/audit/head", headers=reads).json() == before

@@ -9,13 +9,21 @@ from service.audit.exports import entry_of_line
 from service.audit.verification import verify
 from service.storage import Repository
 from service.storage.records import SERVICE
+from testing.service.accounts import auditor
 from testing.service.plants import NOW_NS
-from tests.service.api.conftest import client, context, logs
+from tests.service.api.conftest import client as changing_client
+from tests.service.api.conftest import context, logs
 from tests.service.fixtures import database_url, engine, repository, store
 
-__all__ = ["client", "context", "database_url", "engine", "logs", "repository", "store"]
+__all__ = ["changing_client", "context", "database_url", "engine", "logs", "repository", "store"]
 
 AUDIT = "/api/v1/audit"
+
+
+@pytest.fixture
+def client(changing_client: httpx.Client, repository: Repository) -> httpx.Client:
+    changing_client.headers.update(auditor(repository))
+    return changing_client
 
 
 def trigger(client: httpx.Client, motor: str = "PUMP-A1") -> None:

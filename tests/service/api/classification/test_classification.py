@@ -19,7 +19,7 @@ def recorded(repository: Repository, store: RecordingStore) -> ExaminedRecording
 def test_a_motor_without_records_is_not_called_healthy(client: httpx.Client) -> None:
     found = client.get(f"{MOTOR}/classification").raise_for_status().json()
     assert (found["motor"], found["records"], found["is_told"]) == ("PUMP-A1", 0, False)
-    assert found["words"] == "nothing is seen, and not all is known"
+    assert (found["words"], found["answer"], found["probability"]) == ("not assessed", [], 0.0)
 
 
 def test_a_motor_that_is_unknown_is_not_found(client: httpx.Client) -> None:

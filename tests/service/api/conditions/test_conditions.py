@@ -23,7 +23,7 @@ from testing.service.observations import HOUR_NS, observation
 from testing.service.plants import NOW_NS, fault, healthy, two_motor_plant
 
 MOTOR = "/api/v1/motors/PUMP-A1"
-NOTE = {"kind": "maintenance", "text": "terminals cleaned", "by": "A. Miller"}
+NOTE = {"kind": "maintenance", "text": "terminals cleaned", "on_behalf_of": "A. Miller"}
 FIGURES = ("state", "kind", "candidates", "phase", "mu_f", "mu_f_ci95", "change", "change_ci95")
 
 
@@ -56,9 +56,18 @@ def record(repository: Repository, store: RecordingStore) -> Record:
     return add
 
 
+WHOLE = ("finding", "urgency", "causes", "parts")
+"""Keys of the document that are of the whole motor, beside those of its stator."""
+
+
 def told(condition: Condition) -> dict[str, Any]:
-    """What the API says of a condition whose latest record is from long ago."""
+    """What the API says of the stator's condition whose latest record is from long ago."""
     return {**condition.as_dict(), "stale": True}
+
+
+def of_stator(found: dict[str, Any]) -> dict[str, Any]:
+    """What it says without the keys of the whole motor."""
+    return {name: value for name, value in found.items() if name not in WHOLE}
 
 
 def test_nothing_is_known_of_a_motor_before_its_first_record(client: httpx.Client) -> None:
@@ -79,8 +88,10 @@ def test_nothing_is_known_of_a_motor_before_its_first_record(client: httpx.Clien
         "kind": "none",
         "forecast": {"limit": None, "days": None},
         "stale": True,
+        "finding": "",
+        "urgency": "none",
     }
-    assert set(found) == {*told(FAULT), "history"}
+    assert set(found) == {*told(FAULT), *WHOLE, "history"}
     assert client.get(f"{MOTOR}/condition/history").json() == {"items": [], "next_cursor": None}
     assert client.get(f"{MOTOR}/notes").json() == {"items": [], "next_cursor": None}
 
@@ -92,7 +103,7 @@ def test_a_condition_comes_with_what_was_said_from_the_latest_records_on(
     tell(repository, DRIFTING)
     found = client.get(f"{MOTOR}/condition").json()
     history = found.pop("history")
-    assert found == told(DRIFTING)
+    assert of_stator(found) == told(DRIFTING)
     assert [point["record"] for point in history] == ids
     said = {name: found[name] for name in FIGURES}
     assert history[1] == {**said, "record": ids[1], "time": rfc3339(NOW_NS + HOUR_NS)}
@@ -158,7 +169,11 @@ def test_health_leads_with_the_condition(
     tell(repository, FAULT)
     health = client.get(f"{MOTOR}/health").json()
     assert list(health)[:4] == ["motor", "site", "ied", "condition"]
-    assert health["condition"] == told(FAULT)
+    assert of_stator(health["condition"]) == told(FAULT)
+    assert health["condition"]["finding"] == "shorted turns in phase b"
+    states = {one["part"]: one["state"] for one in health["condition"]["parts"]}
+    assert states["stator"] == "fault"
+    assert states["rotor"] == "unknown"
     assert (health["verdict"], health["phase"], health["recording_id"]) == ("healthy", None, recording_id)
     listed = client.get("/api/v1/motors", params={"health": "true"}).json()["items"]
     assert [one["health"]["condition"]["state"] for one in listed] == ["unknown", "fault"]
@@ -302,7 +317,7 @@ def test_a_motor_that_is_not_there_is_not_found(client: httpx.Client) -> None:
     note = "notes/00000000-0000-0000-0000-000000000000"
     for path in ("condition", "condition/history", "notes", note, "reference"):
         url = f"/api/v1/motors/NOPE/{path}"
-        wanted = {"reason": "tested", "by": "A. Miller"}
+        wanted = {"reason": "tested", "on_behalf_of": "A. Miller"}
         answer = client.post(url, json=wanted) if path == "reference" else client.get(url)
         assert answer.status_code == 404
         assert answer.headers["content-type"] == "application/problem+json"

@@ -12,10 +12,11 @@ from core.units import NANOSECONDS_PER_DAY
 from service.storage import Repository
 from service.storage.records import SERVICE, FoldResult
 from service.storage.repository.motor_versions import MOTORS_FILE
+from testing.service.accounts import TESTER
 from testing.service.plants import NOW_NS
 
 MOTOR = "/api/v1/motors/PUMP-A1"
-NOTE = {"kind": "maintenance", "text": "terminals cleaned", "by": "A. Miller"}
+NOTE = {"kind": "maintenance", "text": "terminals cleaned", "on_behalf_of": "A. Miller"}
 
 
 def test_a_note_is_kept_and_the_condition_is_to_follow_it(
@@ -25,11 +26,12 @@ def test_a_note_is_kept_and_the_condition_is_to_follow_it(
     answer = client.post(f"{MOTOR}/notes", json=wanted)
     assert answer.status_code == 201
     note = answer.json()
-    assert {name: note[name] for name in ("motor", "kind", "text", "by", "time")} == {
+    assert {name: note[name] for name in ("motor", "kind", "text", "by", "on_behalf_of", "time")} == {
         "motor": "PUMP-A1",
         "kind": "maintenance",
         "text": "terminals cleaned",
-        "by": "A. Miller",
+        "by": TESTER,
+        "on_behalf_of": "A. Miller",
         "time": "2025-10-09T08:00:00.000000000Z",
     }
     assert answer.headers["location"] == f"{MOTOR}/notes/{note['id']}"
@@ -41,9 +43,9 @@ def test_a_note_is_kept_and_the_condition_is_to_follow_it(
 
 def test_a_remark_is_for_people_only(client: httpx.Client, repository: Repository) -> None:
     before_ns = time.time_ns()
-    answer = client.post(f"{MOTOR}/notes", json={"text": "noisy\nbearing \N{SNOWMAN}", "by": "Zoë"})
+    answer = client.post(f"{MOTOR}/notes", json={"text": "noisy\nbearing \N{SNOWMAN}", "on_behalf_of": "Zoë"})
     note = answer.json()
-    assert (note["kind"], note["text"], note["by"]) == ("note", "noisy\nbearing \N{SNOWMAN}", "Zoë")
+    assert (note["kind"], note["text"], note["on_behalf_of"]) == ("note", "noisy\nbearing \N{SNOWMAN}", "Zoë")
     assert rfc3339(before_ns) <= note["time"] == note["made_time"] <= rfc3339(time.time_ns())
     assert repository.motors_to_fold() == ()
     assert client.get(f"{MOTOR}/condition/history").json()["items"] == []
@@ -57,9 +59,9 @@ def test_a_note_that_was_wrong_is_withdrawn_and_counts_no_more(
     fold = repository.begin_fold("PUMP-A1", 10)
     assert fold is not None
     assert repository.finish_fold(fold, FoldResult([], [], [], (), None), now_ns=NOW_NS)
-    withdrawal = {"reason": "it was FAN-A2", "by": "B. Moore"}
+    withdrawal = {"reason": "it was FAN-A2", "on_behalf_of": "B. Moore"}
     note = client.post(f"{where}/withdrawal", json=withdrawal).json()
-    assert (note["kind"], note["withdrawn_reason"], note["withdrawn_by"]) == (
+    assert (note["kind"], note["withdrawn_reason"], note["withdrawn_on_behalf_of"]) == (
         "rewound",
         "it was FAN-A2",
         "B. Moore",
@@ -72,23 +74,23 @@ def test_a_note_that_was_wrong_is_withdrawn_and_counts_no_more(
     assert [event.id for event in fold.events] == [kept["id"]]
     again = client.post(f"{where}/withdrawal", json=withdrawal)
     assert (again.status_code, "is withdrawn" in again.json()["detail"]) == (409, True)
-    assert client.post(f"{where}/withdrawal", json={"by": "B. Moore"}).status_code == 422
+    assert client.post(f"{where}/withdrawal", json={"on_behalf_of": "B. Moore"}).status_code == 422
     of_another = where.replace("PUMP-A1", "FAN-A2")
     assert client.post(f"{of_another}/withdrawal", json=withdrawal).status_code == 404
 
 
 def test_what_the_motors_file_tells_is_not_withdrawn(client: httpx.Client, repository: Repository) -> None:
     event = Event(NOW_NS, EventKind.PARAMETERS_EDITED, "stator_resistance_ohm")
-    kept = repository.add_event("PUMP-A1", event, by=SERVICE, told_by=MOTORS_FILE, now_ns=NOW_NS)
-    withdrawal = {"reason": "it is as before", "by": "B. Moore"}
+    kept = repository.add_event("PUMP-A1", event, by=SERVICE, on_behalf_of=MOTORS_FILE, now_ns=NOW_NS)
+    withdrawal = {"reason": "it is as before", "on_behalf_of": "B. Moore"}
     refused = client.post(f"{MOTOR}/notes/{kept.id}/withdrawal", json=withdrawal)
     assert refused.status_code == 409
     assert "is what the motors file tells" in refused.json()["detail"]
 
 
 def test_a_person_who_is_called_as_the_file_is_withdraws_a_note(client: httpx.Client) -> None:
-    where = client.post(f"{MOTOR}/notes", json={**NOTE, "by": MOTORS_FILE}).headers["location"]
-    withdrawal = {"reason": "it was FAN-A2", "by": MOTORS_FILE}
+    where = client.post(f"{MOTOR}/notes", json={**NOTE, "on_behalf_of": MOTORS_FILE}).headers["location"]
+    withdrawal = {"reason": "it was FAN-A2", "on_behalf_of": MOTORS_FILE}
     assert client.post(f"{where}/withdrawal", json=withdrawal).status_code == 200
 
 
@@ -102,17 +104,19 @@ def test_an_edit_of_the_motors_file_is_told_by_editing_it(client: httpx.Client) 
 
 
 def test_a_reference_is_restarted_with_a_reason(client: httpx.Client, repository: Repository) -> None:
-    answer = client.post(f"{MOTOR}/reference", json={"reason": "surge test passed", "by": "A. Miller"})
+    answer = client.post(
+        f"{MOTOR}/reference", json={"reason": "surge test passed", "on_behalf_of": "A. Miller"}
+    )
     assert answer.status_code == 201
     note = client.get(answer.headers["location"]).json()
     assert note == answer.json()
-    assert (note["kind"], note["text"], note["by"]) == (
+    assert (note["kind"], note["text"], note["on_behalf_of"]) == (
         "reference-restarted",
         "surge test passed",
         "A. Miller",
     )
     assert repository.motors_to_fold() == ("PUMP-A1",)
-    for wanted in ({"by": "A. Miller"}, {"reason": " ", "by": "A. Miller"}):
+    for wanted in ({"on_behalf_of": "A. Miller"}, {"reason": " ", "on_behalf_of": "A. Miller"}):
         assert client.post(f"{MOTOR}/reference", json=wanted).status_code == 422
     assert len(client.get(f"{MOTOR}/notes").json()["items"]) == 1
 

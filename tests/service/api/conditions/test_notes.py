@@ -9,7 +9,7 @@ from service.storage import Repository
 from testing.service.plants import two_motor_plant
 
 MOTOR = "/api/v1/motors/PUMP-A1"
-NOTE = {"kind": "maintenance", "text": "terminals cleaned", "by": "A. Miller"}
+NOTE = {"kind": "maintenance", "text": "terminals cleaned", "on_behalf_of": "A. Miller"}
 
 
 WRONG_VALUES: list[tuple[str, object]] = [
@@ -19,11 +19,11 @@ WRONG_VALUES: list[tuple[str, object]] = [
     ("text", "a\0b"),
     ("text", 5),
     ("text", None),
-    ("by", ""),
-    ("by", "x" * 101),
-    ("by", "A.\nMiller"),
-    ("by", "A\x1b[31mMiller"),
-    ("by", ["A. Miller"]),
+    ("on_behalf_of", ""),
+    ("on_behalf_of", "x" * 101),
+    ("on_behalf_of", "A.\nMiller"),
+    ("on_behalf_of", "A\x1b[31mMiller"),
+    ("on_behalf_of", ["A. Miller"]),
     ("kind", "exploded"),
     ("kind", None),
     ("time", 1_760_000_000),
@@ -40,8 +40,8 @@ WRONG_BODIES = [
     (b"[]", 422),
     (b"null", 422),
     (b"{", 422),
-    (b'{"text": "\\ud800", "reason": "\\ud800", "by": "A. Miller"}', 422),
-    (b'{"text": "' + b"x" * 8192 + b'", "by": "A"}', 413),
+    (b'{"text": "\\ud800", "reason": "\\ud800", "on_behalf_of": "A. Miller"}', 422),
+    (b'{"text": "' + b"x" * 8192 + b'", "on_behalf_of": "A"}', 413),
     (b"{" + b",".join(b'"f%d": 1' % number for number in range(300)) + b"}", 422),
     (b"[" * 4000, 400),
 ]
@@ -80,7 +80,7 @@ def test_web_pages_of_other_sites_tell_nothing(client: httpx.Client, path: str) 
 def test_nothing_is_told_of_a_motor_that_left_the_plant(client: httpx.Client, repository: Repository) -> None:
     plant = two_motor_plant()
     repository.sync_plant(replace(plant, motors=plant.motors[1:]))
-    for path, wanted in (("notes", NOTE), ("reference", {"reason": "tested", "by": "A. Miller"})):
+    for path, wanted in (("notes", NOTE), ("reference", {"reason": "tested", "on_behalf_of": "A. Miller"})):
         refused = client.post(f"{MOTOR}/{path}", json=wanted)
         assert refused.status_code == 409
         assert "not in the plant's files any more" in refused.json()["detail"]
@@ -96,6 +96,6 @@ def test_notes_are_neither_changed_nor_deleted(client: httpx.Client) -> None:
 
 
 def test_the_longest_note_is_kept_whole(client: httpx.Client) -> None:
-    longest = {"text": "\N{PILE OF POO}" * 500, "by": "\N{SNOWMAN}" * 100}
+    longest = {"text": "\N{PILE OF POO}" * 500, "on_behalf_of": "\N{SNOWMAN}" * 100}
     note = client.post(f"{MOTOR}/notes", json=longest).json()
-    assert (note["text"], note["by"]) == (longest["text"], longest["by"])
+    assert (note["text"], note["on_behalf_of"]) == (longest["text"], longest["on_behalf_of"])

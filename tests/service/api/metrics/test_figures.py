@@ -8,7 +8,7 @@ import pytest
 from prometheus_client import Metric
 from prometheus_client.parser import text_string_to_metric_families
 
-from core.condition.forecast.forecast import Forecast
+from core.condition.forecast.outcome import Forecast
 from core.units import NANOSECONDS_PER_SECOND
 from service.plant import PlantMotor
 from service.recording_store.store import RecordingStore

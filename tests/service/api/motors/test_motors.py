@@ -4,6 +4,8 @@ import httpx
 import pytest
 
 from core.machines.motor_file.reader import motor_from_table
+from core.machines.stator_winding import StatorWinding, WindingKind
+from service.condition.motor_data import document_of
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from testing.service.job_runner import RUNNER
@@ -39,7 +41,7 @@ def test_the_plant_is_listed(client: httpx.Client) -> None:
     }
     motors = client.get("/api/v1/motors").json()["items"]
     assert [motor["name"] for motor in motors] == ["FAN-A2", "PUMP-A1"]
-    assert client.get("/api/v1/motors/FAN-A2").json() == motors[0]
+    assert client.get("/api/v1/motors/FAN-A2").json() == {**motors[0], "winding": None}
 
 
 def test_pages_lead_through_the_list(client: httpx.Client) -> None:
@@ -91,6 +93,16 @@ def test_recordings_of_a_motor_latest_first(client: httpx.Client, diagnosed: lis
     assert client.get("/api/v1/motors/FAN-A2/recordings").json()["items"] == []
     assert client.get("/api/v1/recordings", params={"motor": "PUMP-A1"}).json()["items"] == items
     assert client.get("/api/v1/recordings", params={"state": "failed"}).json()["items"] == []
+
+
+def test_a_motor_tells_its_stator_winding(client: httpx.Client, repository: Repository) -> None:
+    (pump, _) = two_motor_plant().motors
+    assert client.get("/api/v1/motors/PUMP-A1").json()["winding"] is None
+    for winding in (StatorWinding(WindingKind.LAP, 36, 2, 8), None):
+        told = replace(pump.motor, winding=winding)
+        repository.note_motors({pump.name: document_of(told)}, now_ns=1)
+        expected = None if winding is None else {**asdict(winding), "kind": "lap"}
+        assert client.get("/api/v1/motors/PUMP-A1").json()["winding"] == expected
 
 
 def test_a_motor_with_nothing_but_a_nameplate_asks_to_be_commissioned(

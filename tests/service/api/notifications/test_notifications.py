@@ -13,6 +13,7 @@ from service.storage import Repository
 from service.storage.records import AlarmPlace, AlarmSpec, Gathering, NotificationTarget
 from service.storage.states import AlarmKind
 from service.timing.backoff import Backoff
+from testing.service.accounts import auditor
 from testing.service.plants import NOW_NS
 from tests.service.api.serving import serving
 
@@ -102,7 +103,7 @@ def test_a_test_is_queued_for_each_receiver_and_known_in_the_audit_trail(
     answer = client.post("/api/v1/notification-channels/ops/tests")
     assert answer.status_code == 202
     assert [one["recipient"] for one in answer.json()["items"]] == SHIFT
-    entries = client.get("/api/v1/audit/entries").json()["items"]
+    entries = client.get("/api/v1/audit/entries", headers=auditor(repository)).json()["items"]
     assert [entry["action"] for entry in entries] == ["channel-tested"]
     for _ in range(49):
         assert client.post("/api/v1/notification-channels/ops/tests").status_code == 202

@@ -59,12 +59,22 @@ def test_an_upload_is_stored_once_and_queued(context: ApiContext, repository: Re
 
 
 def test_an_event_report_is_a_recording(client: httpx.Client) -> None:
-    status, document = upload(client, {"C4_10000.CEV": REPORT.content()})
+    status, document = upload(client, {"C4_10000.TXT": REPORT.content()})
     assert status == 201
     assert [file["name"] for file in document["files"]] == ["C4_10000.CEV"]  # type: ignore[attr-defined]
     waveform = client.get(f"/api/v1/recordings/{document['id']}/waveform").json()
     assert [channel["name"] for channel in waveform["channels"]] == ["IA", "IB", "VAB", "VC", "FREQ"]
     assert waveform["trigger_time"].startswith("2024-11-21T06:30:00.25")
+
+
+def test_a_table_is_a_recording(client: httpx.Client) -> None:
+    rows = (f"{k / 4000:.5f},{k % 80},{k % 40}" for k in range(400))
+    content = "\n".join(("time,IA,IB", *rows)).encode()
+    status, document = upload(client, {"pump_2026-01-31T12-00-00.csv": content})
+    assert (status, document["name"]) == (201, "PUMP_2026-01-31T12-00-00")
+    waveform = client.get(f"/api/v1/recordings/{document['id']}/waveform").raise_for_status().json()
+    assert [channel["name"] for channel in waveform["channels"]] == ["IA", "IB"]
+    assert waveform["start_time"].startswith("2026-01-31T12:00:00")
 
 
 def test_a_gap_shows_in_the_waveform(client: httpx.Client) -> None:
@@ -139,12 +149,18 @@ def test_a_recording_can_be_diagnosed_again(
         "queued",
         None,
     )
-    assert client.post(url).json()["model"] == "split-winding"
+    usual, only_searched, only_modelled = (
+        client.post(url, json=wanted).json()
+        for wanted in ({}, {"method": "hcpa"}, {"model": "split-winding"})
+    )
+    assert (usual["method"], usual["model"]) == ("evidence", "coil")
+    assert (only_searched["method"], only_searched["model"]) == ("hcpa", "split-winding")
+    assert (only_modelled["method"], only_modelled["model"]) == ("hybrid", "split-winding")
     claimed = repository.claim_job(now_ns=2**62, runner=RUNNER)
     assert claimed is not None
     repository.finish_job(claimed.job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER)
     runs = client.get(url).json()["items"]
-    assert len(runs) == 3
+    assert len(runs) == 5
     assert [run["result"] for run in runs if run["state"] == "done"] == [stored_document(fault())]
 
 

@@ -14,6 +14,7 @@ from service.configuration.settings import Settings
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from service.storage.records import Actor, Sample
+from testing.service.accounts import auditor
 from testing.service.plants import SECOND_NS, motor
 from tests.core.relay_reports.examples import CLDP, HEAD, LDP
 
@@ -79,12 +80,12 @@ def test_means_are_made_of_the_past(client: httpx.Client) -> None:
     assert [one["ia_A"] for one in measured(client, 60)] == [float(k) for k in range(9)]
 
 
-def test_a_profile_brought_again_adds_only_what_is_new(client: httpx.Client) -> None:
+def test_a_profile_brought_again_adds_only_what_is_new(client: httpx.Client, repository: Repository) -> None:
     bring(client, profile(9))
-    head = client.get("/api/v1/audit/head").json()
+    head = client.get("/api/v1/audit/head", headers=auditor(repository)).json()
     again = bring(client, profile(9)).json()["load_profile"]
     assert (again["added"], again["known"]) == (0, 9)
-    assert client.get("/api/v1/audit/head").json() == head
+    assert client.get("/api/v1/audit/head", headers=auditor(repository)).json() == head
     longer = bring(client, profile(12)).json()["load_profile"]
     assert (longer["added"], longer["known"]) == (3, 9)
     assert len(measured(client)) == 12

@@ -14,6 +14,7 @@ from service.configuration.settings import Settings
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from service.storage.records import Actor
+from testing.service.accounts import auditor
 from testing.service.plants import SECOND_NS, motor
 from testing.service.starts import START, RecordedStarts
 from tests.core.relay_reports.examples import HEAD, MSR
@@ -69,12 +70,12 @@ def test_a_report_becomes_a_start_marked_with_its_source(client: httpx.Client) -
 
 def test_the_same_report_again_changes_nothing(client: httpx.Client, repository: Repository) -> None:
     bring(client, MSR)
-    before, head = listed(client), client.get("/api/v1/audit/head").json()
+    before, head = listed(client), client.get("/api/v1/audit/head", headers=auditor(repository)).json()
 
     assert [one["outcome"] for one in bring(client, MSR).json()["motor_starts"]["starts"]] == ["known"]
 
     assert listed(client) == before
-    assert client.get("/api/v1/audit/head").json() == head
+    assert client.get("/api/v1/audit/head", headers=auditor(repository)).json() == head
 
 
 @pytest.mark.parametrize("report_first", [True, False])

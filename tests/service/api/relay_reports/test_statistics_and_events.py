@@ -18,6 +18,7 @@ from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from service.storage.records import Actor, RelayEvent, Sample
 from service.storage.states import RelayEventKind
+from testing.service.accounts import auditor
 from testing.service.plants import motor
 from testing.service.starts import START, RecordedStarts
 from tests.core.relay_reports.examples import CSER, HEAD, MOT, SER
@@ -106,10 +107,10 @@ def test_starts_stops_and_trips_are_kept_once(
     assert told["kind"] == "SER"
     assert (told["events"]["added"], told["events"]["known"]) == (1, 0)
     assert "RUNNING" in told["events"]["left_out"]
-    head = client.get("/api/v1/audit/head").json()
+    head = client.get("/api/v1/audit/head", headers=auditor(repository)).json()
     again = bring(client, report).json()["events"]
     assert (again["added"], again["known"]) == (0, 1)
-    assert client.get("/api/v1/audit/head").json() == head
+    assert client.get("/api/v1/audit/head", headers=auditor(repository)).json() == head
     started_ns = nanoseconds("2026-03-29T10:15:01.250Z")
     kind = RelayEventKind.START
     kept = repository.relay_events("PUMP-A1", kind, limit=9, from_ns=0, to_ns=time.time_ns())

@@ -106,7 +106,7 @@ def test_records_are_missing_when_the_schedule_promised_them(
     assert table.settle(source.findings(NOW_NS + overdue_ns)) == []
     (alarm,) = table.settle(source.findings(NOW_NS + overdue_ns + 1))
     assert (alarm.kind, alarm.motor) == (AlarmKind.MISSING_DATA, MOTOR)
-    assert alarm.reason == "there is no valid record yet; its schedule is 0 6 * * *"
+    assert alarm.reason == "there is no valid record yet; scheduled at 06:00 every day (UTC)"
     latest("as_of_ns", NOW_NS + DAY_NS)
     assert table.settle(source.findings(NOW_NS + DAY_NS + overdue_ns)) == []
     latest("stood_ns", NOW_NS + 2 * DAY_NS)  # a motor that stands makes no record
@@ -185,7 +185,7 @@ def test_certificates_of_relays_are_told_before_they_end(table: Table, tmp_path:
     }
     told = alarms[ending.certificate_file.name]
     assert told.reason.startswith("ends ")
-    assert told.reason.endswith("UTC (for relay A1_SEL710, relay A2_SEL710, relay B1 and 1 others)")
+    assert told.reason.endswith("Z (for relay A1_SEL710, relay A2_SEL710, relay B1 and 1 others)")
     assert alarms[ended.certificate_file.name].reason.startswith("ended ")
     table.repository.acknowledge_alarm(told.id, by=SERVICE, now_ns=now_ns)
     later_ns = now_ns + 14 * DAY_NS

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import httpx
+import pyotp
 import pytest
 
 from service.api import ApiContext, create_app
@@ -78,16 +79,23 @@ def test_the_owner_of_the_files_makes_the_first_user(
 
 
 def test_login_is_for_the_commands_that_follow(
-    service: httpx.Client, password_file: str, capsys: pytest.CaptureFixture[str]
+    service: httpx.Client, password_file: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     url = ("--url", str(service.base_url).rstrip("/"))
     made = ("user", "add", "anna", "--role", "VIEWER", "--password-file", password_file)
-    assert "user anna: VIEWER" in printed(capsys, *made, *url)
-    assert "anna: VIEWER" in printed(
-        capsys, "login", "--name", "anna", "--password-file", password_file, *url
-    )
+    assert "changes the password first" in printed(capsys, *made, *url)
+    login = ("login", "--name", "anna", "--password-file")
+    assert main([*login, password_file, *url]) == 0
+    assert "tester set this password and knows it" in capsys.readouterr().err
+    assert main(["motors", *url]) == 1
+    assert "change it first (mcc password" in capsys.readouterr().err
+    own = tmp_path / "own"
+    own.touch(mode=0o600)
+    own.write_text(OTHER)
+    printed(capsys, "password", "--old-file", password_file, "--new-file", str(own), *url)
+    assert "anna: VIEWER" in printed(capsys, *login, str(own), *url)
     assert stat.S_IMODE(credentials_file().stat().st_mode) == 0o600
-    assert PASSWORD not in credentials_file().read_text()
+    assert OTHER not in credentials_file().read_text()
     assert "may: account metrics view" in printed(capsys, "whoami", *url)
     assert json.loads(printed(capsys, "motors", "--json", *url))["motors"]
     assert main(["trigger", "PUMP-A1", *url]) == 1
@@ -96,6 +104,76 @@ def test_login_is_for_the_commands_that_follow(
     assert main(["motors", *url]) == 1
     assert "say who you are" in capsys.readouterr().err
     assert printed(capsys, "logout", *url), "harmless where nobody is logged in"
+
+
+def test_a_second_factor_is_set_up_used_and_reset(
+    service: httpx.Client,
+    password_file: str,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    url = ("--url", str(service.base_url).rstrip("/"))
+    login = ("login", "--name", "anna", "--password-file", password_file)
+    code_file = tmp_path / "code"
+    code_file.touch(mode=0o600)
+    printed(capsys, "user", "add", "anna", "--role", "VIEWER", "--password-file", password_file, *url)
+    manager = credentials_file().read_text()
+    printed(capsys, *login, *url)
+
+    class App:
+        """Reads the key that the command shows, and types the code that fits to it."""
+
+        def readline(self, _size: int = -1) -> str:
+            key = capsys.readouterr().err.partition("key for the authenticator app: ")[2].split()[0]
+            return f"{pyotp.TOTP(key).now()}\n"
+
+        def isatty(self) -> bool:
+            return False
+
+    monkeypatch.setattr("sys.stdin", App())
+    set_up = main(["second-factor", "set-up", "--password-file", password_file, *url])
+    assert set_up == 0, capsys.readouterr().err
+    codes = capsys.readouterr().out.split()
+    assert len(codes) == 10
+    assert main([*login, *url]) == 1
+    code_file.write_text(f"{codes[0]}\n")
+    assert "anna:" in printed(capsys, *login, "--code-file", str(code_file), *url)
+    renewed = printed(capsys, "second-factor", "codes", "--password-file", password_file, *url).split()
+    assert set(renewed).isdisjoint(codes)
+    assert "is removed" in printed(capsys, "second-factor", "remove", "--password-file", password_file, *url)
+    credentials_file().write_text(manager)
+    said = json.loads(printed(capsys, "user", "reset-second-factor", "anna", "--json", *url))
+    assert len(said["code"]) == 19
+    assert main([*login, *url]) == 0, "no role of hers needs it"
+
+
+def test_the_first_administrator_gets_the_code_on_the_services_machine(
+    config: str, password_file: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ("--config", config)
+    printed(capsys, "user", "add", "anna", "--role", "SECADM", "--password-file", password_file, *words)
+    assert "code for one login: " in printed(capsys, "user", "reset-second-factor", "anna", *words)
+    assert main(["user", "reset-second-factor", "nobody", *words]) == 1
+
+
+def test_who_logs_in_reads_the_notice_first(
+    repository: Repository,
+    store: RecordingStore,
+    tmp_path: Path,
+    password_file: str,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    settings = Settings.model_validate(
+        {"data_directory": tmp_path, "access": {"use_notice": "For staff only."}}
+    )
+    with serving(create_app(ApiContext(settings, repository, store))) as client:
+        url = ("--url", str(client.base_url).rstrip("/"))
+        printed(capsys, "user", "add", "anna", "--password-file", password_file, *url)
+        assert main(["login", "--name", "anna", "--password-file", password_file, "--json", *url]) == 0
+        captured = capsys.readouterr()
+    assert json.loads(captured.out)["name"] == "anna"
+    assert "For staff only." in captured.err
 
 
 def test_a_login_with_a_wrong_password_keeps_nothing(
@@ -134,18 +212,39 @@ def test_users_are_changed_and_deleted(
     printed(capsys, "user", "password", "bert", "--password-file", password_file, *where)
     printed(capsys, "user", "unlock", "bert", *where)
     printed(capsys, "user", "logout", "bert", *where)
-    made = json.loads(
-        printed(
-            capsys, "token", "add", "t", "--user", "bert", "--scope", "view", "--days", "1", "--json", *where
-        )
-    )
-    assert (made["user"], made["scope"], made["token"][:4]) == ("bert", ["view"], "mcc_")
-    assert made["token"] not in printed(capsys, "token", "list", *where)
-    printed(capsys, "token", "revoke", made["id"], *where)
-    assert main(["token", "revoke", made["id"], *where]) == 1
     printed(capsys, "user", "delete", "bert", *where)
     assert main(["user", "delete", "bert", *where]) == 1
     assert "there is no user 'bert'" in capsys.readouterr().err
+
+
+def test_the_owner_of_the_files_makes_tokens_of_programs_alone(
+    config: str, service: httpx.Client, password_file: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    here, there = ("--config", config), ("--url", str(service.base_url).rstrip("/"))
+    printed(capsys, "user", "add", "historian", "--role", "VIEWER", "--no-password", *here)
+    words = ("token", "add", "t", "--user", "historian", "--scope", "view", "--days", "1", "--json")
+    assert main([*words, *there]) == 1
+    assert "expected --config or --local" in capsys.readouterr().err
+    made = json.loads(printed(capsys, *words, *here))
+    assert (made["user"], made["scope"], made["token"][:4]) == ("historian", ["view"], "mcc_")
+    assert made["token"] not in printed(capsys, "token", "list", *here)
+    assert main(["token", "add", "t", "--user", "historian", "--days", "91", *here]) == 1
+    assert "access.token_days" in capsys.readouterr().err
+    printed(capsys, "token", "revoke", made["id"], *here)
+    assert main(["token", "revoke", made["id"], *here]) == 1
+    printed(capsys, *words, *here)
+    assert "have ended" in printed(capsys, "token", "revoke-all", "--user", "historian", *here)
+    assert "historian" not in printed(capsys, "token", "list", *here)
+    assert main(["token", "revoke-all", *here]) == 1, "whose is not told"
+    printed(capsys, "user", "password", "historian", "--password-file", password_file, *here)
+    assert main([*words, *here]) == 1
+    assert "made by that user alone" in capsys.readouterr().err
+
+
+def test_all_own_tokens_end(service: httpx.Client, capsys: pytest.CaptureFixture[str]) -> None:
+    url = ("--url", str(service.base_url).rstrip("/"))
+    assert "your tokens have ended" in printed(capsys, "token", "revoke-all", *url)
+    assert main(["token", "list", *url]) == 1, "the one that asked was one of them"
 
 
 def test_a_token_is_for_programs(

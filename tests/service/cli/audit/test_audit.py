@@ -10,10 +10,12 @@ from sqlalchemy import Engine, text
 from service.api import ApiContext, create_app
 from service.audit.actions import AuditAction
 from service.cli.app import main
+from service.client.credentials import remember
 from service.configuration.settings import Settings
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from service.storage.records import Actor
+from testing.service.accounts import auditor_token
 from testing.service.plants import NOW_NS
 from tests.service.api.serving import serving
 from tests.service.fixtures import database_url, engine, repository, store
@@ -41,6 +43,7 @@ def run(capsys: pytest.CaptureFixture[str]) -> Run:
 @pytest.fixture
 def url(repository: Repository, store: RecordingStore, tmp_path: Path) -> Iterator[str]:
     with serving(create_app(ApiContext(Settings(data_directory=tmp_path), repository, store))) as client:
+        remember(str(client.base_url), token=auditor_token(repository))
         yield str(client.base_url)
 
 

@@ -37,6 +37,21 @@ def chosen(*names: str) -> list[str]:
         (["X.CFF", "X.CFG", "X.DAT"], ["X.CFG, X.DAT"]),
         (["HR_10007.HDR", "CR_10007.CEV"], ["CR_10007.CEV"]),
         (["CR_10007.CEV", "HR_10008.CFG", "HR_10008.DAT"], ["CR_10007.CEV", "HR_10008.CFG, HR_10008.DAT"]),
+        (
+            [
+                "OSC16B007.CFG",
+                "OSC16B007.DAT",
+                "OSC32F007.CFG",
+                "OSC32F007.DAT",
+                "OSCA007.CFG",
+                "OSCA007.DAT",
+            ],
+            ["OSC32F007.CFG, OSC32F007.DAT"],
+        ),
+        (
+            ["OSCA007.CFG", "OSCA007.DAT", "OSC16B007.CFG", "OSC16B007.DAT", "OSCA008.CFG", "OSCA008.DAT"],
+            ["OSC16B007.CFG, OSC16B007.DAT", "OSCA008.CFG, OSCA008.DAT"],
+        ),
         (["DR10007.CEV", "HR_10007.CFG"], ["DR10007.CEV", "HR_10007.CFG"]),
     ],
 )

@@ -49,6 +49,14 @@ def test_the_files_of_a_record_are_one_record() -> None:
     assert listing.refused == ()
 
 
+def test_an_event_report_named_as_a_text_is_kept_as_an_event_report() -> None:
+    listing = understood(listed("C8_10001.TXT", "EVENTS/CR_10002.txt", "SET_ALL.TXT"))
+    files = [record.files[0] for record in listing.records]
+    assert [file.local_name for file in files] == ["C8_10001.CEV", "CR_10002.CEV"]
+    assert [file.remote_name for file in files] == ["EVENTS/C8_10001.TXT", "EVENTS/CR_10002.txt"]
+    assert [file.name for file in listing.ignored] == ["SET_ALL.TXT"]
+
+
 def test_size_and_time_are_those_of_the_whole_record() -> None:
     (record,) = understood([Entry("X.CFG", 10, 7), Entry("X.DAT", 1000, 9)]).records
     assert (record.size_bytes, record.modified_ns) == (1010, 9)

@@ -13,10 +13,11 @@ from core.recordings import read
 from ied_sim.relay.event_recorder import RecorderSettings
 from service.background.joining import SeriesJoiner
 from service.background.long_records import LongRecorder
-from service.collector.triggers.series import NoSeriesError, SeriesUnderWay, rhythm_of
+from service.collector.triggers.series import SeriesUnderWay
 from service.jobs.task import Diagnosed, DiagnosisTask
 from service.jobs.worker import diagnose_recording
 from service.plant import PlantMotor
+from service.plant.series_rhythm import NoSeriesError, rhythm_of
 from service.storage.records import RecordingEntry, RecordingRequest, Sample
 from service.storage.states import (
     LinkState,

@@ -17,7 +17,8 @@ from typing import Any
 import pytest
 
 from core.units import NANOSECONDS_PER_DAY
-from service.gateways.iec104.points import POINTS, RELAY_ANSWERS
+from service.gateways.iec104.gateway import KINDS
+from service.gateways.iec104.points import RELAY_ANSWERS
 from service.gateways.iec104.server import StationServer
 from service.gateways.iec104.telegrams import single_point
 from service.storage import Repository
@@ -236,8 +237,8 @@ def test_wireshark_reads_values_qualities_and_times_as_they_were_told(
     interrogated = {place: one for place, one in told if one.cause == INTERROGATED}
     kinds = {"M_SP_TB_1": PLAIN_SINGLE, "M_ME_TE_1": PLAIN_WHOLE, "M_ME_TF_1": PLAIN_FLOAT}
     expected = {
-        block + offset: kinds[point.kind.name] for block in (FAN, PUMP) for offset, point in enumerate(POINTS)
-    } | {block + RELAY_ANSWERS: PLAIN_SINGLE for block in (FAN, PUMP)}
+        block + offset: kinds[kind.name] for block in (FAN, PUMP) for offset, kind in enumerate(KINDS)
+    }
     assert {place: one.kind for place, one in interrogated.items()} == expected
     assert {one.station for _, one in told} == {STATION}
 

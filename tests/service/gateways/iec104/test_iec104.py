@@ -12,7 +12,16 @@ from pathlib import Path
 import pytest
 
 from service.configuration.gateways.iec104 import Iec104Settings
-from service.gateways.iec104.points import BLOCK, FIRST, POINTS, QUALITIES, RELAY_ANSWERS, said_of
+from service.gateways.iec104.gateway import KINDS
+from service.gateways.iec104.points import (
+    BLOCK,
+    FIRST,
+    LIKELY_PHASES,
+    POINTS,
+    QUALITIES,
+    RELAY_ANSWERS,
+    said_of,
+)
 from service.gateways.plant_state.reading import read_plant_state
 from service.storage import Repository
 from service.storage.records import AlarmPlace, AlarmSpec
@@ -60,7 +69,7 @@ def test_everything_is_told_when_asked_and_each_value_with_the_time_of_the_recor
         master.interrogate(7)
         told = dict(master.told)
         level_read, link_read = master.read(PUMP + 2, 7), master.read(FAN + RELAY_ANSWERS, 7)
-    assert sorted(told) == [one + offset for one in (FAN, PUMP) for offset in range(len(POINTS) + 1)]
+    assert sorted(told) == [one + offset for one in (FAN, PUMP) for offset in range(len(KINDS))]
     watch, fault, level, low, high = (told[PUMP + offset] for offset in range(5))
     assert (watch.value, fault.value, fault.quality, fault.cause) == (1, 1, 0, INTERROGATED)
     assert (level.value, low.value, high.value) == pytest.approx((1.21, 0.9, 2.25))
@@ -197,8 +206,11 @@ def test_a_port_that_is_taken_is_told_and_tried_again(repository: Repository, tm
 def test_the_page_has_every_point_and_the_map_is_written(port: int, tmp_path: Path) -> None:
     section = PAGE.read_text(encoding="utf-8").partition("<!-- points: begin -->")[2]
     rows = re.findall(r"^\| (\d+) \| (M_\w+) \| (.*) \|$", section.partition("<!-- points: end -->")[0], re.M)
-    expected = [(str(offset), point.kind.name, point.meaning) for offset, point in enumerate(POINTS)]
-    assert rows == [*expected, (str(RELAY_ANSWERS), "M_SP_TB_1", "The relay answers")]
+    said = [(point.kind.name, point.meaning) for point in POINTS]
+    likely = [(point.kind.name, point.meaning) for point in LIKELY_PHASES]
+    expected = [*said, ("M_SP_TB_1", "The relay answers"), *likely]
+    assert rows == [(str(offset), kind, meaning) for offset, (kind, meaning) in enumerate(expected)]
+    assert len(KINDS) == len(expected) <= BLOCK
     assert (tmp_path / "iec104-map.csv").read_text(encoding="utf-8").splitlines() == [
         "motor,first address",
         f"FAN-A2,{FAN}",

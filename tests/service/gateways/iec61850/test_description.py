@@ -24,7 +24,7 @@ from tests.service.gateways.tls import files_of
 __all__ = ["port"]  # a fixture
 
 TAGS = {"scl": NAMESPACE}
-MEMBERS_OF_REVISION = ("2", "6d2ad5efee6b086a")
+MEMBERS_OF_REVISION = ("3", "c27856279d043afa")
 """confRev, and the digest of what reports of that revision have. Clients notice a change by confRev alone."""
 
 

@@ -18,6 +18,7 @@ from hypothesis import strategies as st
 from open61850 import data as open_data
 from open61850 import mms as open_mms
 
+from core.rotor.finding import RotorState
 from mms import GOOD, Client, FunctionalConstraint, MmsError, Timestamp, Validity
 from mms import Quality as MmsQuality
 from mms.values import BitString
@@ -28,15 +29,14 @@ from service.gateways.plant_state.figures import PlantChange, PlantState
 from service.gateways.plant_state.reading import read_plant_state
 from service.recording_store.folder import FolderStore
 from service.storage import Repository
-from service.storage.records import AlarmPlace, AlarmSpec
-from service.storage.states import AlarmKind, LinkState
+from service.storage.states import LinkState
 from testing.ports import LOOPBACK, free_port
 from testing.service.conditions import DRIFTING, FAULT, HEALTHY, UNKNOWN, tell
 from testing.service.gateways import running_gateways
 from testing.service.job_runner import register_runner
 from testing.service.links import set_link_state
 from testing.service.plants import NOW_NS, SECOND_NS, two_motor_plant
-from testing.service.rotor_and_supply import SUPPLY, ExaminedRecordings
+from testing.service.rotor_and_supply import BROKEN_ROTOR, SUPPLY, ExaminedRecordings
 from testing.waiting import eventually
 from tests.service.gateways.settings import port_of, settings_of
 
@@ -134,7 +134,9 @@ def test_figures_that_records_do_not_tell_are_questionable_and_not_old(
     assert quality(client, level, MEASURED) == MmsQuality(Validity.INVALID)
 
 
-def test_kind_rotor_and_warning_are_numbered_as_the_page_says(repository: Repository, client: Client) -> None:
+def test_kind_rotor_and_warning_are_numbered_as_the_page_says(
+    repository: Repository, client: Client, tmp_path: Path
+) -> None:
     kind, rotor = f"{PUMP}/GGIO1.IntIn1.stVal", f"{PUMP}/GGIO1.IntIn2.stVal"
     warning, alarm = "MCCPLANT/CALH1.GrWrn.stVal", "MCCPLANT/CALH1.GrAlm.stVal"
 
@@ -152,12 +154,14 @@ def test_kind_rotor_and_warning_are_numbered_as_the_page_says(repository: Reposi
     assert [client.read(one, STATUS) for one in (kind, rotor, alarm)] == [8, 0, False]
     assert client.read(times[0], STATUS) != warned, "the time of a group is that of its own change"
     assert client.read(times[1], STATUS) == alarmed
-    for number, named in ((1, AlarmKind.ROTOR_WATCH), (2, AlarmKind.ROTOR_FAULT)):
-        repository.clear_alarms_at(AlarmPlace(motor="PUMP-A1"), AlarmKind.ROTOR_WATCH, now_ns=NOW_NS)
-        spec = AlarmSpec(named, "the rotor's resistance is asymmetric")
-        repository.raise_alarm_at(AlarmPlace(motor="PUMP-A1"), spec, now_ns=NOW_NS)
+    register_runner(repository)
+    records = ExaminedRecordings(repository, FolderStore(tmp_path / "recordings"))
+    for number, state, of_kind in ((1, RotorState.WATCH, 8), (2, RotorState.FAULT, 7)):
+        for _ in range(3):
+            records.add(replace(BROKEN_ROTOR, state=state))
+        repository.settle_motor_condition("PUMP-A1", now_ns=NOW_NS)
         assert eventually(partial(is_told, rotor, number))
-        assert client.read(kind, STATUS) == 8
+        assert client.read(kind, STATUS) == of_kind
     assert eventually(lambda: client.read(alarm, STATUS) is True)
     assert client.read(warning, STATUS) is False
 

@@ -34,7 +34,7 @@ def test_nothing_is_good_any_more(repository: Repository, broker: Mosquitto, tmp
     # A motor without a record has no condition that was good before: the rest alone changes.
     of_records = {name for name in of_pump.metrics if name.startswith("Condition/")} - {"Condition/Stale"}
     assert of_fan.metrics.keys() == of_pump.metrics.keys() - of_records
-    assert (len(of_pump.metrics), len(of_fan.metrics)) == (25, 9)
+    assert (len(of_pump.metrics), len(of_fan.metrics)) == (27, 9)
     for device in (of_fan, of_pump):
         qualities = {one["properties"][0]["values"][0]["int_value"][0] for one in device.metrics.values()}
         assert qualities == {500}

@@ -8,7 +8,6 @@ from threading import Event
 import pytest
 
 from core.condition.kinds import Kind, State
-from core.rotor.finding import RotorState
 from core.units import NANOSECONDS_PER_DAY
 from service.gateways.plant_state.device_health import DeviceHealth, health_of_motor
 from service.gateways.plant_state.figures import PlantChange, Quality
@@ -171,21 +170,21 @@ def test_stopping_ends_the_wait(follower: PlantFollower) -> None:
 
 
 @pytest.mark.parametrize(
-    ("state", "kind", "stale", "rotor", "expected"),
+    ("state", "kind", "stale", "expected"),
     [
-        (State.HEALTHY, Kind.NONE, False, None, DeviceHealth.NORMAL),
-        (State.WATCH, Kind.UNCLEAR, False, None, DeviceHealth.MAINTENANCE_REQUIRED),
-        (State.FAULT, Kind.SHORTED_TURNS, True, None, DeviceHealth.FAILURE),
-        (State.FAULT, Kind.SUPPLY, False, None, DeviceHealth.OFF_SPEC),
-        (State.HEALTHY, Kind.NONE, True, None, DeviceHealth.CHECK_FUNCTION),
-        (State.UNKNOWN, Kind.NONE, False, RotorState.WATCH, DeviceHealth.MAINTENANCE_REQUIRED),
-        (State.WATCH, Kind.UNCLEAR, False, RotorState.FAULT, DeviceHealth.FAILURE),
+        (State.HEALTHY, Kind.NONE, False, DeviceHealth.NORMAL),
+        (State.WATCH, Kind.UNCLEAR, False, DeviceHealth.MAINTENANCE_REQUIRED),
+        (State.FAULT, Kind.SHORTED_TURNS, True, DeviceHealth.FAILURE),
+        (State.FAULT, Kind.SUPPLY, False, DeviceHealth.OFF_SPEC),
+        (State.HEALTHY, Kind.NONE, True, DeviceHealth.CHECK_FUNCTION),
+        (State.UNKNOWN, Kind.NONE, False, DeviceHealth.CHECK_FUNCTION),
+        (State.FAULT, Kind.ROTOR, False, DeviceHealth.FAILURE),
     ],
 )
-def test_the_worse_one_of_winding_and_rotor_is_the_health_of_a_motor(
-    state: State, kind: Kind, stale: bool, rotor: RotorState | None, expected: DeviceHealth
+def test_the_state_of_the_worst_part_is_the_health_of_a_motor(
+    state: State, kind: Kind, stale: bool, expected: DeviceHealth
 ) -> None:
-    assert health_of_motor(state, kind, stale=stale, rotor=rotor) is expected
+    assert health_of_motor(state, kind, stale=stale) is expected
 
 
 def test_a_clock_that_jumps_makes_values_old_and_good_again_and_stops_nothing(

@@ -7,7 +7,7 @@ from sqlalchemy import Engine
 from sqlalchemy.orm import Session
 
 from core.condition.events import Event, EventKind
-from core.condition.forecast.forecast import Forecast
+from core.condition.forecast.outcome import Forecast
 from core.condition.kinds import Kind, State
 from core.condition.verdict.condition import Condition
 from service.alarms.kinds import AlarmKind, AlarmPriority

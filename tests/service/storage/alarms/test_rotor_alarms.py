@@ -4,10 +4,11 @@ from dataclasses import replace
 
 import pytest
 
+from core.condition.kinds import Kind, State
 from core.rotor.finding import RotorState
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
-from service.storage.records import Actor, Alarm, StandingRotor
+from service.storage.records import Actor, Alarm
 from service.storage.states import AlarmKind, AlarmState
 from testing.service.plants import NOW_NS, two_motor_plant
 from testing.service.rotor_and_supply import BROKEN_ROTOR, SHORT_RECORD, SOUND_ROTOR, ExaminedRecordings
@@ -42,7 +43,7 @@ def test_a_fault_is_told_when_two_records_agree_and_is_over_when_they_do_no_more
     latest = recorded.add(BROKEN_ROTOR)
     assert settled(recorded) == [(AlarmKind.ROTOR_FAULT, calls)]
     (alarm,) = opened(recorded.repository)
-    assert alarm.reason.startswith("asymmetry of the rotor -29.0 dB; 2 of the latest 3 records show a fault")
+    assert alarm.reason.startswith("rotor bar severity -29.0 dB; 2 of the latest 3 records show a fault")
     assert alarm.what_to_do.startswith("Have the cage inspected at the next planned stop")
     assert (alarm.recording_id, alarm.priority) == (latest, "high")
 
@@ -54,13 +55,14 @@ def test_a_fault_is_told_when_two_records_agree_and_is_over_when_they_do_no_more
 
 def test_the_fleet_shows_a_rotor_and_since_which_record(recorded: ExaminedRecordings) -> None:
     first, *_ = (recorded.add(finding) for finding in (SOUND_ROTOR, SOUND_ROTOR, UNEVEN, UNEVEN, UNEVEN))
-    settled(recorded)
     repository = recorded.repository
+    repository.settle_motor_condition("PUMP-A1", now_ns=NOW_NS)
     course = repository.rotor_condition("PUMP-A1")
     pump, fan = sorted(repository.fleet(), key=lambda one: one.motor.name, reverse=True)
-    assert pump.rotor == StandingRotor(RotorState.WATCH, course.since_ns)
+    assert (pump.condition.state, pump.condition.kind) == (State.WATCH, Kind.ROTOR)
+    assert pump.condition.since_ns == course.since_ns
     assert (course.since_ns or 0) > (repository.recording(first).recorded_ns or 0)
-    assert fan.rotor is None
+    assert fan.condition.state is State.UNKNOWN
 
 
 def test_the_alarm_says_the_same_however_often_it_is_settled(recorded: ExaminedRecordings) -> None:

@@ -10,6 +10,7 @@ from alembic import command
 from sqlalchemy import Engine, text
 
 from core.rotor.finding import RotorFinding, RotorState
+from core.rotor.trend import condition_of_findings
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, migrate
 from service.storage.migrations import config
@@ -177,3 +178,15 @@ def _expected(findings: Sequence[tuple[int, RotorFinding]]) -> Expected:
     ]
     since_ns = seen[others[-1] + 1 if others else 0][0]
     return states[-1], since_ns, median(changes) if changes else None, bins
+
+
+def test_files_alone_tell_the_same_as_the_database(recorded: ExaminedRecordings) -> None:
+    repository = recorded.repository
+    louder = replace(SOUND_ROTOR, severity_dB=-60.0, severity_dB_ci95=(-62.0, -58.0))
+    other_load = replace(louder, load_bin=2)
+    findings = [SOUND_ROTOR, other_load, louder, SHORT_RECORD, louder, BROKEN_ROTOR, louder, BROKEN_ROTOR]
+    for number in range(len(findings)):
+        recorded.add(findings[number])
+        times = [one.recorded_ns or 0 for one in repository.recordings(motor=MOTOR, limit=100).items]
+        followed = condition_of_findings(list(zip(sorted(times), findings, strict=False)))
+        assert followed == repository.rotor_condition(MOTOR)

@@ -186,7 +186,8 @@ def test_the_latest_diagnosis_of_a_recording_counts(repository: Repository, reco
     repository.finish_job(job.id, fault(0.06), recorded_ns=NOW_NS, now_ns=NOW_NS + 2, runner=RUNNER)
     (point,) = repository.trend("PUMP-A1", "mu_f", limit=10).items
     assert point.value == 0.06
-    assert [one.job.method for one in repository.jobs(recording_id, limit=10).items] == ["genetic", "hybrid"]
+    diagnosed = repository.jobs(recording_id, limit=10).items
+    assert [one.job.method for one in diagnosed] == ["genetic", "evidence"]
 
 
 def test_a_failed_repetition_leaves_the_earlier_diagnosis(repository: Repository, recording_id: str) -> None:

@@ -11,7 +11,7 @@ from testing.service.job_runner import RUNNER
 from testing.service.plants import NOW_NS, SECOND_NS, healthy
 
 MOTOR = "PUMP-A1"
-METHOD, MODEL, OTHER = "hybrid", "split-winding", "shorted-winding"
+METHOD, MODEL, OTHER = "evidence", "coil", "shorted-winding"
 
 BOTH = pytest.mark.parametrize("database_url", ["sqlite", "postgresql"], indirect=True)
 

@@ -104,7 +104,9 @@ def test_users_with_sessions_locks_and_tokens(repository: Repository) -> None:
         repository.begin_session(
             digest, "ada", "password", oldest_ns=0, idle_since_ns=0, by=Actor("ada", "::1"), now_ns=at_ns
         )
-    repository.add_token("bob", "program", "3" * 64, scope=None, expires_ns=None, by=ADMIN, now_ns=NOW_NS)
+    repository.add_token(
+        "bob", "program", "3" * 64, scope=None, expires_ns=None, by=Actor("bob", "::1"), now_ns=NOW_NS
+    )
     users = ["ada", "bob"]
     assert repository.open_sessions(users, oldest_ns=NOW_NS, idle_since_ns=NOW_NS) == {"ada": 2}
     assert repository.open_sessions(users, oldest_ns=NOW_NS, idle_since_ns=NOW_NS + 5) == {"ada": 1}

@@ -212,3 +212,12 @@ def test_an_operator_acknowledges_and_shelves_but_takes_nothing_out_of_service(
     assert actions == ["acknowledgement", "shelving"]
     assert client.post(f"/alarms/{pump.id}/out-of-service", data={}).status_code == 403
     assert client.post(f"/alarms/{pump.id}/acknowledgement", data={}).status_code == 303
+
+
+def test_a_comment_has_its_author_whatever_the_state_of_the_alarm(
+    client: httpx.Client, repository: Repository, pump: Alarm
+) -> None:
+    place = AlarmPlace(motor="PUMP-A1")
+    repository.clear_alarms_at(place, AlarmKind.CONDITION_FAULT, now_ns=NOW_NS, why="it is gone")
+    for path in ("/alarms", f"/alarms/{pump.id}"):
+        assert "statorwatch: it is gone" in " ".join(page(client.get(path)).text_content().split())

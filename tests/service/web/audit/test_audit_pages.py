@@ -1,15 +1,21 @@
 """The audit trail on a page: filtered, with values before and after, and verified."""
 
 import httpx
+import pytest
 from sqlalchemy import Engine, text
 
 from service.storage import Repository
 from service.storage.records import Actor, Role
-from testing.service.accounts import token_of
+from testing.service.accounts import auditor, token_of
 from testing.service.plants import NOW_NS
 from tests.service.web.pages import HOSTILE, page, words
 
 ADMIN = Actor("admin", HOSTILE, frozenset({Role.SECADM}))
+
+
+@pytest.fixture(autouse=True)
+def audits(client: httpx.Client, repository: Repository) -> None:
+    client.headers.update(auditor(repository))
 
 
 def fill(repository: Repository) -> None:

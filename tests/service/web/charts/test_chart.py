@@ -30,8 +30,8 @@ def test_intervals_are_part_of_the_description_and_of_the_table() -> None:
     series = [Series("level", [2.0], unit="%", low=[1.0], high=[3.0])]
     one = Chart("level", "Fault level", "time", "level", [86400.0], series, x_kind=AxisKind.TIME)
     assert one.series[0].document()["low"] == [1.0]
-    assert one.table.headings == ("time (UTC)", "level (%)", "level: low", "level: high")
-    assert one.table.rows == (("1970-01-02 00:00:00", "2", "1", "3"),)
+    assert one.table.headings == ("time", "level (%)", "level: low", "level: high")
+    assert one.table.rows == (("1970-01-02 00:00:00 UTC", "2", "1", "3"),)
     assert one.table.told == "All 1 values."
 
 

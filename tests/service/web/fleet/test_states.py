@@ -7,7 +7,10 @@ import pytest
 from core.condition.kinds import State
 from core.diagnosis.verdict import Verdict
 from core.machines.parameters import ParametersSource
+from core.motor_condition.condition import motor_condition
+from core.motor_condition.judging import rotor_part
 from core.rotor.finding import RotorState
+from core.rotor.trend import RotorCondition
 from core.units import NANOSECONDS_PER_DAY, NANOSECONDS_PER_SECOND
 from service.storage.records import (
     CallingAlarms,
@@ -15,7 +18,6 @@ from service.storage.records import (
     FleetMotor,
     LatestFigures,
     MotorEntry,
-    StandingRotor,
 )
 from service.storage.states import AlarmPriority, LinkState
 from service.web.fleet.filters import FleetFilter
@@ -77,11 +79,20 @@ def calling(urgency: int, priority: AlarmPriority) -> CallingAlarms:
 
 def test_a_broken_rotor_counts_as_a_fault_beside_a_healthy_winding() -> None:
     motor = motor_of("PUMP", seen(entry_of(HEALTHY), 1))
-    broken = row_of(replace(motor, rotor=StandingRotor(RotorState.FAULT, WEEK_NS)), NOW_NS, 7.0)
+    rotor = RotorCondition(RotorState.FAULT, -29.0, (-31.0, -27.0), None, WEEK_NS, (), ())
+    whole = motor_condition(HEALTHY, (rotor_part(rotor),))
+    entry = replace(
+        motor.condition,
+        state=whole.state,
+        kind=whole.kind,
+        since_ns=whole.since_ns,
+        document=whole.as_dict(),
+    )
+    broken = row_of(replace(motor, condition=entry), NOW_NS, 7.0)
     sound = row_of(motor, NOW_NS, 7.0)
-    assert (broken.state, broken.all_states[0]) == (FleetState.HEALTHY, FleetState.FAULT)
+    assert broken.state is FleetState.FAULT
     assert broken.needs_attention
-    assert (broken.rotor, broken.rotor_since_ns) == (RotorState.FAULT, WEEK_NS)
+    assert (broken.kind, broken.since_ns) == (whole.finding, WEEK_NS)
     assert not sound.needs_attention
     assert broken.advice.startswith("Have the cage inspected")
     assert sorted((sound, broken), key=lambda one: one.attention)[0] is broken
@@ -125,7 +136,7 @@ def test_a_count_is_the_number_of_motors_that_its_filter_shows() -> None:
     ]
     for state, number in counts(rows).items():
         assert len(FleetFilter(state=state).chosen(rows)) == number
-    assert counts(rows)[FleetState.STALE] == 2
+    assert counts(rows)[FleetState.STALE] == 1
     assert [one.name for one in FleetFilter(site="QUARRY").chosen(rows)] == ["C"]
     assert [one.name for one in FleetFilter(text="TURNS  no recent").chosen(rows)] == ["A"]
     assert FleetFilter(text="nowhere").chosen(rows) == []

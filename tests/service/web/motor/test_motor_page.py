@@ -12,7 +12,7 @@ import pytest
 from lxml import html
 
 from core.condition.events import Event, EventKind
-from core.condition.kinds import Kind, State
+from core.condition.kinds import BESIDE_STATOR, Kind, State
 from core.condition.verdict.condition import Condition as Judged
 from core.units import NANOSECONDS_PER_DAY, NANOSECONDS_PER_SECOND
 from service.api.conditions.schemas import Condition
@@ -189,6 +189,7 @@ def test_nameplate_and_parameters_say_where_they_come_from(
     (text,) = words(page(client.get(HERE)), "#nameplate")
     assert "Rated power at the shaft800 W" in text
     assert "Poles4, 1500 rpm without slip" in text
+    assert "Stator windingnot given" in text
     assert "Parameters: given in the motors file" in text
     assert "Stator resistance R_s8.4 ohm within 10 %" in text
     assert "Limit of the fault level0.50 %" in text
@@ -220,6 +221,15 @@ def test_a_recording_is_asked_for(client: httpx.Client, repository: Repository) 
         "The relay is asked for a recording. It comes within a minute or so."
     ]
     assert request.state in words(document, "#records li")[0]
+
+
+def test_a_long_recording_is_offered_and_asked_for(client: httpx.Client, repository: Repository) -> None:
+    (button,) = page(client.get(HERE)).cssselect("button[name=seconds]")
+    assert button.text_content() == "Record 10 s (rotor)"
+    client.post(f"{HERE}/recording-requests", data={"seconds": button.get("value") or ""})
+    (request,) = repository.recording_requests(motor=MOTOR, limit=5).items
+    assert request.seconds == 10.0
+    assert client.post(f"{HERE}/recording-requests", data={"seconds": "300"}).status_code == 422
 
 
 def test_the_latest_record_is_diagnosed_again(shown: Shown) -> None:
@@ -346,7 +356,7 @@ def test_a_kind_that_is_named_is_told_with_its_phase() -> None:
         == "Shorted turns in phase a were seen, and are gone"
     )
     assert told(FAULT, state=State.WATCH, kind=Kind.NONE).startswith("Its asymmetry from the first record on")
-    assert set(KINDS) == set(Kind) - {Kind.NONE, Kind.UNCLEAR}
+    assert set(KINDS) == set(Kind) - BESIDE_STATOR - {Kind.NONE, Kind.UNCLEAR}
 
 
 def test_the_axis_of_the_trend_is_not_pressed_flat_by_a_level_far_above() -> None:
@@ -358,8 +368,8 @@ def test_the_axis_of_the_trend_is_not_pressed_flat_by_a_level_far_above() -> Non
     assert [one.label for one in near.limits] == [
         "motor's limit 0.50 %",
         "next level 2.00 %",
-        "seen from 0.40 %",
+        "detection limit 0.40 %",
     ]
     far = trend_chart("P", trend, limit=0.005, ahead=0.005, detectable=0.1687)
     assert [one.label for one in far.limits] == ["motor's limit 0.50 %"]
-    assert "Above what is drawn: seen from 16.87 %." in far.summary
+    assert "Above what is drawn: detection limit 16.87 %." in far.summary

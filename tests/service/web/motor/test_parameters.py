@@ -27,7 +27,7 @@ def recorder(repository: Repository, store: RecordingStore) -> Recorder:
 def test_what_no_record_tells_is_said(client: httpx.Client, recorder: Recorder) -> None:
     del recorder
     document = page(client.get(HERE))
-    assert words(document, "#parameters .sentence") == ["not told No record tells of the parameters yet."]
+    assert words(document, "#parameters .sentence") == ["not assessed No record tells of the parameters yet."]
 
 
 def test_a_drift_is_told_in_words_and_drawn_with_its_interval(
@@ -38,7 +38,7 @@ def test_a_drift_is_told_in_words_and_drawn_with_its_interval(
     document = page(client.get(HERE))
     (sentence,) = words(document, "#parameters .sentence")
     assert sentence.startswith("drifting Parameters have drifted: ")
-    assert "the ratio of a current or voltage transformer is another" in sentence
+    assert "a CT or VT ratio changed" in sentence
     (found,) = document.cssselect("#parameter-magnetising-inductance-data")
     chart = json.loads(found.text_content())
     assert len(chart["x"]["values"]) == WRONG_FROM + 12 - REFERENCE_RECORDS + 1

@@ -43,7 +43,7 @@ def chart(document: html.HtmlElement, key: str) -> Any:
 
 def test_what_no_record_tells_is_said(client: httpx.Client, recorded: ExaminedRecordings) -> None:
     document = page(client.get(HERE))
-    assert words(document, "#rotor .sentence") == ["not told No record tells of the rotor yet."]
+    assert words(document, "#rotor .sentence") == ["not assessed No record tells of the rotor yet."]
     assert "No record shows the supply yet." in " ".join(words(document, "#supply"))
     assert not document.cssselect("#rotor-severity-data, #supply-data")
 
@@ -85,7 +85,7 @@ def test_severity_is_drawn_by_load_with_what_would_be_seen(
     drawn = {one["label"]: one["values"] for one in chart(document, "rotor-severity")["series"]}
     assert drawn["at 30 to 40 % load"] == [None, -66.0, None]
     assert drawn["at 60 to 70 % load"] == [-68.0, None, -29.0]
-    assert drawn["would be seen"] == [-52.0] * 3
+    assert drawn["detection limit"] == [-52.0] * 3
     assert [one["y"] for one in chart(document, "rotor-severity")["limits"]] == [-42.0, -36.0]
     assert drawn[RotorState.FAULT] == [None, None, -29.0]
     sidebands = {one["label"]: one["values"] for one in chart(document, "rotor-sidebands")["series"]}

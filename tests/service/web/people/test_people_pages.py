@@ -9,7 +9,7 @@ from service.access.bearer_secrets import digest_of
 from service.access.passwords import hashed
 from service.storage import Repository
 from service.storage.records import Actor, Role
-from testing.service.accounts import token_of
+from testing.service.accounts import TESTER, token_of
 from tests.service.web.pages import HOSTILE, addresses, page, words
 
 NOW_NS = time.time_ns()
@@ -42,14 +42,16 @@ def test_users_are_listed_with_roles_sessions_and_tokens(client: httpx.Client, a
 
 
 def test_a_user_is_made_changed_and_deleted(client: httpx.Client, repository: Repository) -> None:
-    form = {"name": "Bob", "full_name": "Bob B.", "password": PASSWORD, "roles": ["VIEWER", "SECAUD"]}
+    form = {"name": "Bob", "full_name": "Bob B.", "password": PASSWORD, "roles": ["VIEWER", "SECADM"]}
     answer = client.post("/people", data=form)
     assert answer.headers["location"] == "/people/bob?done=user-added"
     user = repository.user("bob")
-    assert (user.roles, user.has_password) == (frozenset({Role.VIEWER, Role.SECAUD}), True)
+    assert (user.roles, user.has_password) == (frozenset({Role.VIEWER, Role.SECADM}), True)
     document = page(client.get("/people/bob"))
+    assert "tester" in words(document, "header")[0], "who looks, not whom they look at"
+    assert "User(" not in words(document, "header")[0]
     chosen = [box.get("value") for box in document.cssselect("input[name=roles][checked]")]
-    assert chosen == ["VIEWER", "SECAUD"]
+    assert chosen == ["VIEWER", "SECADM"]
     client.post("/people/bob", data={"roles": ["OPERATOR"], "disabled": "true"})
     user = repository.user("bob")
     assert (user.roles, user.disabled, user.full_name) == (frozenset({Role.OPERATOR}), True, "Bob B.")
@@ -93,22 +95,47 @@ def test_the_last_administrator_stays(client: httpx.Client) -> None:
     assert "SECADM" in answer.text
 
 
-def test_the_secret_of_a_token_is_shown_once(client: httpx.Client, repository: Repository, ada: str) -> None:
+def test_the_secret_of_a_token_is_shown_once(client: httpx.Client, repository: Repository) -> None:
     form = {"label": HOSTILE, "scope": ["view", "metrics"], "days": "30"}
-    answer = client.post(f"/people/{ada}/tokens", data=form)
+    answer = client.post("/account/tokens", data=form)
     assert answer.headers["cache-control"] == "no-store"
     (secret,) = words(page(answer), "#secret")
     kept = repository.token_with(digest_of(secret))
     assert kept is not None
     token, user = kept
-    assert (user.name, token.label, token.scope) == (ada, HOSTILE, frozenset({"view", "metrics"}))
-    assert token.expires_ns is not None
-    document = page(client.get(f"/people/{ada}"))
+    assert (user.name, token.label, token.scope) == (TESTER, HOSTILE, frozenset({"view", "metrics"}))
+    document = page(client.get(f"/people/{TESTER}"))
     assert secret not in document.text_content()
-    (revoke,) = addresses(document, "section[aria-labelledby=tokens] td form")
-    assert client.post(revoke).headers["location"] == "/people/ada?done=token-revoked"
+    (revoke,) = [
+        one for one in addresses(document, "section[aria-labelledby=tokens] td form") if token.id in one
+    ]
+    assert client.post(revoke).headers["location"] == f"/people/{TESTER}?done=token-revoked"
     assert repository.token_with(digest_of(secret)) is None
-    assert client.post(f"/people/{ada}/tokens", data={"label": "", "days": ""}).status_code == 422
+    assert client.post("/account/tokens", data={"label": "", "days": ""}).status_code == 422
+
+
+def test_all_tokens_of_a_user_end(client: httpx.Client, repository: Repository, ada: str) -> None:
+    token_of(repository, name=ada)
+    assert page(client.get(f"/people/{ada}")).cssselect(f"form[action='/people/{ada}/tokens-end']")
+    assert client.post(f"/people/{ada}/tokens-end").headers["location"] == "/people/ada?done=tokens-revoked"
+    assert repository.tokens_of_users([ada]) == {}
+    assert repository.session_of("1" * 64) is not None
+    own = page(client.get("/account"))
+    assert own.cssselect("form[action='/account/tokens-end']")
+    client.post("/account/tokens-end")
+    assert repository.tokens_of_users([TESTER]) == {}
+
+
+def test_a_password_of_another_is_told_and_leads_to_the_account(
+    client: httpx.Client, anybody: httpx.Client, repository: Repository
+) -> None:
+    client.post("/people", data={"name": "bob", "password": PASSWORD, "roles": ["VIEWER"]})
+    assert "by tester, not changed yet" in " ".join(page(client.get("/people/bob")).text_content().split())
+    login = anybody.post("/login", data={"name": "bob", "password": PASSWORD, "next": "/alarms"})
+    assert login.headers["location"] == "/account"
+    told = page(anybody.get("/account")).text_content()
+    assert "tester set your password and knows it" in told
+    assert anybody.get("/alarms").status_code == 403
 
 
 def test_only_who_manages_users_sees_the_pages(
@@ -125,16 +152,14 @@ def test_the_own_account(client: httpx.Client, repository: Repository) -> None:
     document = page(client.get("/account"))
     text = " ".join(document.text_content().split())
     assert "Acknowledge and shelve alarms." in text
-    assert "Another password" not in text, "there is none: a token asks"
+    assert "Change password" not in text, "there is none: a token asks"
     answer = client.post("/account/tokens", data={"label": "historian", "days": ""})
     (secret,) = words(page(answer), "#secret")
     found = repository.token_with(digest_of(secret))
     assert found is not None
-    assert (found[0].label, found[0].expires_ns, found[0].scope) == (
-        "historian",
-        None,
-        frozenset(scopes(client)),
-    )
+    token = found[0]
+    assert (token.label, token.scope) == ("historian", frozenset(scopes(client)))
+    assert token.expires_ns is not None, "no later than that of the token that asks"
     client.post(f"/account/tokens/{found[0].id}/revocation")
     assert repository.token_with(digest_of(secret)) is None
 

@@ -30,10 +30,7 @@ def test_a_relay_that_is_new_and_one_that_nobody_knows() -> None:
         == "The relay answered 100.0 % of the 5 days that are known of the last 10 days, with no outage."
     )
     assert history.spans[0].state is None
-    assert (
-        link_history([], days=30, now_ns=NOW_NS).sentence
-        == "Nothing is known of the link in the last 30 days."
-    )
+    assert link_history([], days=30, now_ns=NOW_NS).sentence == "No data of the link in the last 30 days."
     only = link_history([change(1, UNKNOWN)], days=1, now_ns=NOW_NS)
     assert only.answered is None
 

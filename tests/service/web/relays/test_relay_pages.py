@@ -57,13 +57,13 @@ def test_relays_are_listed_with_link_clock_records_and_what_differs(
     assert words(document, "section[aria-labelledby=gateways] p") == [
         "No gateway runs: no relay is visited at present."
     ]
-    assert words(document, ".counts a") == ["1 does not answer", "1 not asked yet"]
+    assert words(document, ".counts a") == ["1 down", "1 unknown"]
     first, second = (words(row, "td") for row in document.cssselect("tbody tr"))
-    assert first[0].startswith(f"does not answerrefused {HOSTILE}since ")
+    assert first[0].startswith(f"downrefused {HOSTILE}since ")
     assert first[1:3] == ["24 hours ago", "never"]
     assert first[3] == "7 s behind (± 0.1 s), says it is not synchronised"
     assert first[4:] == ["1 difference", "120", "none needed", "1"]
-    assert second[0] == "not asked yet"
+    assert second[0] == "unknown"
     assert second[1:] == [
         "never",
         "never",
@@ -111,10 +111,10 @@ def test_one_relay_tells_all_that_is_known_of_it(client: httpx.Client, busy: Rep
         f"{HOSTILE}.TXT",
         "no file of a recording",
     ]
-    assert words(document, "section[aria-labelledby=changes] td")[1] == "does not answer"
+    assert words(document, "section[aria-labelledby=changes] td")[1] == "down"
     assert client.get("/relays/NOPE").status_code == 404
     empty = " ".join(page(client.get(f"/relays/{B}?days=7")).text_content().split())
-    assert "Nothing is known of the link in the last 7 days." in empty
+    assert "No data of the link in the last 7 days." in empty
     assert "Nobody has visited it yet." in empty
 
 
@@ -159,3 +159,15 @@ def test_certificates_that_end_are_told(
         assert [row.partition(".pem")[0].rpartition("/")[2] for row in rows] == ["gone", "own", "peer"]
         assert rows[2].endswith(f"relay {A}, relay {B}")
         assert str(peer.certificate_file) in text
+
+
+@pytest.mark.parametrize("state", [LinkState.DOWN, LinkState.QUARANTINED])
+def test_a_link_state_has_one_word_on_every_page(
+    client: httpx.Client, repository: Repository, state: LinkState
+) -> None:
+    set_link_state(repository, A, state, "refused", now_ns=NOW_NS)
+    word = str(state)
+    assert words(page(client.get(f"/relays/{A}")), "#relay .state")[0] == word
+    assert word in words(page(client.get("/relays")), "tbody td")[0]
+    assert f"(link {word})" in page(client.get("/motors/PUMP-A1")).text_content()
+    assert f"link {word}: {A}" in page(client.get("/")).text_content()

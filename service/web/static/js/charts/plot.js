@@ -4,7 +4,7 @@
 import { drawPoints, looksOf } from "./looks.js";
 import { limitsAndMarks } from "./overlays.js";
 import { colours } from "./theme.js";
-import { inStepsOf } from "./words.js";
+import { inStepsOf, TIMES } from "./words.js";
 
 /** @typedef {import("./description.js").Description} Description */
 /** @typedef {import("./description.js").SeriesDescription} SeriesDescription */
@@ -109,7 +109,7 @@ function axes(description, theme, isNarrow) {
   const axis = { stroke: theme.of("muted"), grid: { stroke: theme.of("line"), width: 1 }, ticks: { show: false } };
   const ofNumbers = { values: inDigits, label: withUnit(x), labelSize: 18, size: 26 };
   return [
-    { ...axis, ...(x.kind === "time" ? {} : ofNumbers) },
+    { ...axis, ...(x.kind === "time" ? { values: TIMES } : ofNumbers) },
     { ...axis, values: inDigits, ...yAxis(description, isNarrow) },
   ];
 }

@@ -1,8 +1,21 @@
 // @ts-check
 /** Numbers and times of charts as people read them. */
 
+import { clock } from "../clock.js";
+
 const DIGITS = 4;
-const instant = new Intl.DateTimeFormat(undefined, { dateStyle: "medium", timeStyle: "medium" });
+
+const DAY = "\n{YYYY}-{MM}-{DD}";
+const MINUTE = `${DAY} {HH}:{mm}`;
+/** What is written at the marks of an axis of time, from which step [s] on: then with a new year, month, day, hour, minute. */
+export const TIMES = [
+  [31_536_000, "{YYYY}", null, null, null, null, null, null, 1],
+  [2_419_200, "{YYYY}-{MM}", null, null, null, null, null, null, 1],
+  [86_400, "{MM}-{DD}", "\n{YYYY}", null, null, null, null, null, 1],
+  [60, "{HH}:{mm}", DAY, null, DAY, null, null, null, 1],
+  [1, "{HH}:{mm}:{ss}", DAY, null, DAY, null, null, null, 1],
+  [0.001, ":{ss}.{fff}", MINUTE, null, MINUTE, null, MINUTE, null, 1],
+];
 
 /** @param {number|null|undefined} value */
 export function formatY(value) {
@@ -27,7 +40,7 @@ export function inWords(one, at) {
 
 /** @param {number} value @param {{kind: string, unit: string}} axis */
 export function formatX(value, axis) {
-  if (axis.kind === "time") return instant.format(new Date(value * 1000));
+  if (axis.kind === "time") return clock(new Date(value * 1000), true);
   return `${String(Number(value.toPrecision(7)))}${axis.unit ? ` ${axis.unit}` : ""}`;
 }
 

@@ -1,0 +1,1 @@
+"""Benchmark: parameters from starts of motors as they are built."""

@@ -1,0 +1,1 @@
+"""What plants do to motors and measurements: how records and histories of it are judged."""

@@ -1,0 +1,1 @@
+"""The speed that is seen in line currents, beside an encoder."""
