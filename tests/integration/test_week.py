@@ -35,8 +35,8 @@ FACTORY_A = tuple(relay for relay in RELAYS if relay.startswith("A"))
 FACTORY_B = tuple(relay for relay in RELAYS if relay.startswith("B"))
 MOTORS_A = ("PUMP-A1", FAN, "MILL-A3")
 
-FAULT = ((3.0, 0.0), (7.0, 0.08))
-"""Days, and the level of the turns that are shorted."""
+FAULT = ((3.0, 0.0), (7.0, 1.0))
+"""Days, and the share of a coil's turns that are shorted."""
 
 MOST_ROUNDS = 150
 """On a machine that is busy the week may be over before the fault is seen to grow; it stays as it is then."""
@@ -59,7 +59,7 @@ def week(directory: Path) -> Path:
         (r"timeline = \[.*\]", f"timeline = [{', '.join(_step(*step) for step in FAULT)}]"),
         (r"swing_period_s = 230000", "swing_period_s = 53000"),
         (r"changes = \[.*\]\n", ""),
-        (r'\[motor\.fault\]\nphase = "a"\nlevel = 0.04\n', ""),
+        (r'\[motor\.fault\]\nphase = "a"\ncoil = 2\ncoil_share = \S+\n', ""),
         (r"stop = \{.*\}\n", ""),
     ):
         text, number = re.subn(pattern, new, text)
@@ -69,8 +69,8 @@ def week(directory: Path) -> Path:
     return scenario
 
 
-def _step(days: float, level: float) -> str:
-    return f"{{ at_days = {days}, level = {level} }}"
+def _step(days: float, coil_share: float) -> str:
+    return f"{{ at_days = {days}, coil_share = {coil_share} }}"
 
 
 @contextmanager
