@@ -1,5 +1,7 @@
-"""Work over the cores, intervals of rates, and the sections of the accuracy page."""
+"""Work over the cores, intervals of rates, and pages of evidence with their tables as files."""
 
+import csv
+import re
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
@@ -28,6 +30,10 @@ MOST_AT_A_TIME = 8
 """Tasks handed to a process at once."""
 FEWEST_TURNS = 64
 """Into so many handfuls a few long tasks are split, so that no process is left with the last of them."""
+CELLS_ON_PAGE = 20
+"""A larger table is a file beside the page."""
+TOTAL = "all"
+"""What a row that sums up others has in its first cell."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,6 +99,54 @@ def table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
     return ["| " + " | ".join(line) + " |" for line in lines]
 
 
+def with_tables_as_files(page: Path, name: str, lines: Sequence[str]) -> list[str]:
+    """Return the lines with a link in place of each large table, which is written as CSV beside the page.
+
+    page: that of the lines.  name: of the first file in its folder `data`; further ones are numbered. The
+    rows that sum up a table stay on the page.
+    """
+    left: list[str] = []
+    number = 0
+    at = 0
+    while at < len(lines):
+        end = at
+        while end < len(lines) and lines[end].startswith("|"):
+            end += 1
+        header, rows = _cells(lines[at]), [_cells(line) for line in lines[at + 2 : end]]
+        if len(header) * len(rows) <= CELLS_ON_PAGE:
+            end = max(end, at + 1)
+            left += lines[at:end]
+            at = end
+            continue
+        number += 1
+        file = page.parent / "data" / (f"{name}.csv" if number == 1 else f"{name}-{number}.csv")
+        _write_csv(file, header, rows)
+        totals = _totals(rows)
+        left += [*table(header, totals), ""] if totals else []
+        left.append(f"[All {len(rows)} rows](data/{file.name})")
+        at = end
+    return left
+
+
+def _cells(line: str) -> list[str]:
+    """The cells of a row of a Markdown table."""
+    return [cell.strip() for cell in re.split(r"(?<!\\)\|", line.strip().strip("|"))]
+
+
+def _totals(rows: Sequence[Sequence[str]]) -> list[Sequence[str]]:
+    """The rows that sum up others."""
+    return [row for row in rows if row[0].strip("*") == TOTAL]
+
+
+def _write_csv(path: Path, header: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+    """Write a table without its mark-up."""
+    path.parent.mkdir(exist_ok=True)
+    with path.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        for row in (header, *rows):
+            writer.writerow([re.sub(r"\*\*|`", "", cell).replace("\\|", "|") for cell in row])
+
+
 def mark(passed: bool) -> str:
     return "met" if passed else "**falls short**"
 
@@ -101,14 +155,18 @@ def write_sections(path: Path, preamble: str, order: Sequence[str], sections: Se
     """Put sections into the page, each in its place; those not measured this time stay as they are."""
     old = path.read_text(encoding="utf-8") if path.exists() else ""
     new = {section.subject: section.text() for section in sections}
-    parts = [preamble.strip() + "\n"]
+    named = [("", preamble.strip() + "\n")]
     for subject in order:
         begin, end = _begin(subject), _end(subject)
         if subject in new:
-            parts.append(new[subject])
+            named.append((subject, new[subject]))
         elif begin in old and end in old:
-            parts.append(old[old.index(begin) : old.index(end)] + end + "\n")
-    path.write_text("\n".join(parts), encoding="utf-8")
+            named.append((subject, old[old.index(begin) : old.index(end)] + end + "\n"))
+    text = [
+        with_tables_as_files(path, f"{path.stem}-{subject}" if subject else path.stem, part.split("\n"))
+        for subject, part in named
+    ]
+    path.write_text("\n".join("\n".join(lines) for lines in text), encoding="utf-8")
 
 
 def _begin(subject: str) -> str:

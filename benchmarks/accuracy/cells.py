@@ -176,15 +176,13 @@ def _cell_summary(measured: Sequence[Estimates]) -> Iterator[str]:
     for model in dict.fromkeys(one.trial.judged_as for one in measured):
         own = [one for one in measured if one.trial.judged_as == model]
         deviations = np.array([one.deviation for one in own])
-        efficient = np.array([one.efficient_deviation for one in own])
         biases = np.abs([one.bias for one in own])
         own_biases = np.abs([one.own_bias for one in own])
         right = all(one.phase_right == one.trial.seeds for one in own)
         yield (
             f"- {model}: deviation {np.sqrt(np.mean(deviations**2)):.2f} of the bound over all cells, "
             f"{deviations.max():.2f} in the worst, above {MOST_DEVIATION:g} in "
-            f"{int((deviations > MOST_DEVIATION).sum())} of {len(own)} (the efficient estimator on the same "
-            f"noise: {int((efficient > MOST_DEVIATION).sum())}); bias at most {biases.max():.2f}, "
+            f"{int((deviations > MOST_DEVIATION).sum())} of {len(own)}; bias at most {biases.max():.2f}, "
             f"above {MOST_BIAS:g} in {int((biases > MOST_BIAS).sum())}; own bias at most "
             f"{own_biases.max():.2f}, above {MOST_BIAS:g} in {int((own_biases > MOST_BIAS).sum())}; "
             f"phase {'right in all' if right else '**not right in all**'}."

@@ -12,22 +12,19 @@ from benchmarks.reporting import Section, rate_text, spread, table
 from core.commissioning.prior import PARAMETERS
 
 PAGE = Path("docs/evidence/commissioning.md")
-PREAMBLE = """# Parameters from a start
+PREAMBLE = """\
+# Parameters from a start
 
-How near are the parameters that `mcc commission` estimates from one start, and do the intervals hold the
-truth? The records are simulated (`benchmarks/commissioning/motors.py`): rotors of two cages of coils, leakage
-that falls as an arc tangent does, 10 kHz, noise of 46 dB on the currents, nothing given but the plate without
-its speed. The estimator has other equations and another law of saturation (`core/machines/deep_bars.py`). The
-parameters are those of a small slip and of running currents.
-
-The rotor's leakage follows the stator's: terminals tell only their sum. Speed: the largest error of the
-model's speed in running records at 0.3, 0.6 and 1.0 of the rated torque, with the estimated parameters.
+Asked: how near are the parameters that `mcc commission` estimates from one start, and do the intervals hold
+the truth? Records are simulated (`benchmarks/commissioning/motors.py`): rotors of two cages of coils,
+leakage that falls as an arc tangent, 10 kHz, noise of 46 dB, nothing given but the plate without its speed.
+The estimator has other equations and another law of saturation (`core/machines/deep_bars.py`). Parameters
+are those of small slip and running currents; the rotor's leakage follows the stator's. Speed: the largest
+error of the model's speed at 0.3, 0.6 and 1.0 of rated torque.
 
 **Falls short.** The leakage is 1 % too small in the median: part of what the simulator's law takes away at
-rated current already counts as saturated there. Commissioning was to take 5 s for a start of 3 s: a second of
-a 7.5 kW motor takes that, 2.5 s of a 160 kW motor ten to 24, most of it for the three laws of the load with a
-rotor of two loops. The seconds of the tables are of two motors at once on two cores. Five hundred motors were
-to be drawn, not 96.
+rated current counts as saturated there. A start of 3 s was to take 5 s: a second of a 7.5 kW motor takes
+that, 2.5 s of a 160 kW motor ten to 24. Five hundred motors were to be drawn, not 96.
 """
 SYMBOLS = ("R_s", "R_r", "L_ls", "L_s", "J")
 FEW, MANY = 4, 96

@@ -12,8 +12,8 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
-from benchmarks.condition.marks import HEADER, Mark, marks_table, summary
-from benchmarks.reporting import table
+from benchmarks.condition.marks import Mark, marks_table, summary
+from benchmarks.reporting import with_tables_as_files
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "evidence" / "condition.md"
@@ -21,45 +21,29 @@ PAGE = ROOT / "docs" / "evidence" / "condition.md"
 TITLE = "# How well a motor is judged over time"
 
 ABOUT = """\
-A motor's recordings are judged one after the other: is it healthy, what has changed, since when, how much,
-how soon does it reach its limit? This page tells how often the answer is right, of simulated motors, whose
-truth is known, and of measured recordings. `python -m benchmarks.condition` writes it; each section names the
-command that repeats it. Every figure is given as it was found, also where it falls short of what is asked.
+Asked: when a motor's recordings are judged one after the other, how often is the answer right? Is it
+healthy, what has changed, since when, how much, how soon does it reach its limit? `python -m
+benchmarks.condition` writes this page; each section names the command that repeats it. Large tables are
+files in `data`.
 
-**Seen** means that a change was found, of whatever kind. **Called `fault`** means that the motor's state was
-`fault`: shorted turns above its limit, which is 0.5 % of a phase.
-
-**Asked** is what a study of the method reached in a simulation of its own, and beyond that what the service
-is to reach. **Found** is given with its 95 % interval after Clopper and Pearson. **Met** compares the
-estimate as it is, without rounding, with the figure asked; where the interval holds that figure, other motors
-could turn the mark. Of a range over paths, the lowest rate is to reach its low end, the highest its high end.
+**Seen**: a change was found, of whatever kind. **Called `fault`**: shorted turns above the limit, 0.5 % of
+a phase. **Asked**: what a study of the method reached in a simulation of its own, and beyond that what the
+service is to reach. **Found**: with its 95 % interval after Clopper and Pearson. **Met** compares the
+estimate itself; other motors could turn a mark whose interval holds the figure asked. Of a range over
+paths, the lowest rate is to reach its low end, the highest its high end.
 """
 
 RECORDS = """\
 ## How the records are made
 
-**Records** are phasors in all sections but two: records through files and measured recordings are samples in
-time. The phasors come from the machine's own equations and not from the filter's: three windings in phase
-variables with shorted turns, a path's resistance and joints, solved with the star point or the delta
-(`benchmarks/condition/circuit.py`). The tests hold them against the core's models and against circuits in
-phase variables.
-
-**Motors** have a rating of their own, 0.8 to 400 kW, star or delta, either sequence, 50 or 60 Hz; a file that
-is off by up to 10 % in each figure unless said otherwise; windings that differ by themselves; a cage with
-skin effect; inductance that saturates; windings that warm with the load; a load that is constant, steps,
-wanders, is random or on a duty cycle.
-
-**Channels** have gains and delays uniform in their class, which the motor's file states: one of four classes,
-from 1 % and 50 us to 0.2 % and 10 us.
-
-**Supplies** have a V2/V1 that wanders and jumps by up to 4 %; their voltage and frequency wander.
-
-**Noise** is that of a channel's phasor from record to record over V1 (currents: over V1/|Z2|): `real` 0.02 %,
-as measured motors repeat, and `harsh` 0.2 %.
-
-**Levels** are equivalent ones, turns / (1 + path); `path` is the path's resistance over that of the turns.
-
-**Delays** count records from the first with the change, which is 1.
+Phasors of three windings in phase variables with shorted turns, paths and joints, in star or delta
+(`benchmarks/condition/circuit.py`), and not of the filter's equations; records through files and measured
+recordings are samples in time. **Motors**: 0.8 to 400 kW, 50 or 60 Hz, files off by up to 10 %, deep bars,
+saturation, windings that warm, loads that step, wander or cycle. **Channels**: gains and delays uniform in
+the class that the file states, from 1 % and 50 us to 0.2 % and 10 us. **Supplies**: V2/V1 that wanders and
+jumps by up to 4 %. **Noise** over V1: `real` 0.02 %, as measured motors repeat, and `harsh` 0.2 %.
+**Levels** are equivalent ones, turns / (1 + path). **Delays** count records from the first with the change,
+which is 1.
 """
 
 
@@ -127,22 +111,33 @@ def write_page(page: Path, sections: Mapping[str, Section], new: Mapping[str, Me
     measured = read_measured(page) | dict(new)
     kept = {subject: measured[subject] for subject in sections if subject in measured}
     documents = {subject: one.as_dict() for subject, one in kept.items()}
-    text = page_text(sections, kept)
+    texts = page_texts(sections, kept)
     _data_of(page).write_text(json.dumps(documents, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
-    page.write_text(text, encoding="utf-8")
+    lines = [
+        line
+        for name, text in texts.items()
+        for line in with_tables_as_files(page, f"{page.stem}-{name}", text.split("\n"))
+    ]
+    page.write_text("\n".join(lines), encoding="utf-8")
 
 
 def page_text(sections: Mapping[str, Section], measured: Mapping[str, Measured]) -> str:
-    """Return the page: what is asked and found at the top, then a section each.
+    """Return the page with all its tables."""
+    return "\n".join(page_texts(sections, measured).values())
+
+
+def page_texts(sections: Mapping[str, Section], measured: Mapping[str, Measured]) -> dict[str, str]:
+    """Return the parts of the page by their names: what is asked and found, then a section each.
 
     Sections that were measured on another code than the newest one are marked.
     """
     newest = max(measured.values(), key=lambda one: one.finished, default=None)
     code = "" if newest is None else newest.code
-    parts = [f"{TITLE}\n", ABOUT, "\n".join([*_overview(sections, measured, code), ""]), RECORDS]
+    overview = "\n".join([*_overview(sections, measured, code), ""])
+    parts = {"top": "\n".join([f"{TITLE}\n", ABOUT, overview, RECORDS])}
     for subject, section in sections.items():
-        parts.append("\n".join([*section_lines(section, measured.get(subject), code), ""]))
-    return "\n".join(parts)
+        parts[subject] = "\n".join([*section_lines(section, measured.get(subject), code), ""])
+    return parts
 
 
 def section_lines(section: Section, measured: Measured | None, code: str) -> list[str]:
@@ -158,23 +153,25 @@ def section_lines(section: Section, measured: Measured | None, code: str) -> lis
 
 
 def _overview(sections: Mapping[str, Section], measured: Mapping[str, Measured], code: str) -> list[str]:
-    """Return how many figures are met, a row a section, and every one that falls short."""
-    rows, short = [], []
+    """Return how many figures of each section are met, and every one that falls short."""
+    lines = ["## What is asked, and what was found", "", *_sizes(sections, measured, code), ""]
     for subject, section in sections.items():
         one = measured.get(subject)
         if one is None:
-            rows.append([_link(section), "-", "-", "-", "**not measured**"])
+            lines.append(f"- {_link(section)}: **not measured**")
             continue
-        note = "" if one.code == code else "; **earlier code**"
-        rows.append([_link(section), *summary(one.marks), _when(one) + note])
-        short += [[_link(section), *mark.row()[:-1]] for mark in one.marks if mark.met is False]
-    lines = ["## What is asked, and what was found", "", *_sizes(sections, measured, code), ""]
-    lines += table(["section", "figures judged", "met", "fall short", "measured"], rows)
-    if short:
-        lines += ["", "What **falls short**:", "", *table(["section", *HEADER[:-1]], short)]
-    elif any(one.marks for one in measured.values()):
-        lines += ["", "Nothing that was judged falls short."]
+        judged, met, _ = summary(one.marks)
+        short = "; ".join(_short(mark) for mark in one.marks if mark.met is False)
+        lines.append(
+            f"- {_link(section)}: {met} of {judged} met{'' if one.code == code else ' on **earlier code**'}"
+            + (f". **Falls short**: {short}" if short else "")
+        )
     return lines
+
+
+def _short(mark: Mark) -> str:
+    """Return what falls short, with its first estimate."""
+    return f"{mark.what} ({mark.found.partition(' (')[0]})"
 
 
 def _sizes(sections: Mapping[str, Section], measured: Mapping[str, Measured], code: str) -> list[str]:

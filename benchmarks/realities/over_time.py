@@ -22,7 +22,7 @@ from benchmarks.condition.population import draw_motor
 from benchmarks.condition.records import REAL_NOISE, measure
 from benchmarks.processes import worker_processes
 from benchmarks.realities.histories import DRIFT_RECORDS, LATER, Reality, happens
-from benchmarks.reporting import spread, table
+from benchmarks.reporting import spread, table, with_tables_as_files
 from core.condition.kinds import Kind, State
 
 PAGE: Final = Path("docs/evidence/realities-over-time.md")
@@ -201,32 +201,27 @@ def _old(counts: Mapping[str, Any] | None, what: str) -> str:
     return "-" if counts is None else f"{counts[what]} of {counts['motors']}"
 
 
-PREAMBLE: Final = """# What plants do to motors, over time
+PREAMBLE: Final = """\
+# What plants do to motors, over time
 
-Is a motor called faulty because of what hangs beside it or of what measures it, and is a fault seen beside
+Asked: is a motor called faulty because of what hangs beside it or measures it, and is a fault seen beside
 that? `python -m benchmarks.realities.over_time --motors {motors} --first {first}` prints these tables:
-{motors} motors a row, numbers {first} to {last}. The motors have 0.8 to 400 kW, in star and delta, with
-either phase order, other parameters than their file (10 %), and relays of four classes. They are recorded
-hourly with the scatter of measured motors (0.02 %), and have 24 to 80 healthy records first. The currents
-are phasors of a circuit of its own (`benchmarks/condition/circuit.py`), without the formulas of the filter.
-What hangs beside the motor draws its current from the same terminals. "Before" is the version before a
-second change was followed and other loads were known as a cause.
-
-A transformer drifts in the phase whose turns short at the end of the drift. The voltage transformers are
-exchanged with the first record that has shorted turns. Otherwise turns short 10 to 60 records after the plant
-did something, and in one of three pairs with the same record. The second of a pair begins 10 to 60 records
-after the first.
+{motors} motors a row, numbers {first} to {last}, 0.8 to 400 kW, star and delta, parameters off by 10 %,
+relays of four classes, hourly records with the scatter of measured motors, 24 to 80 of them healthy.
+Currents are phasors of a circuit of its own (`benchmarks/condition/circuit.py`). "Before" is the version
+before a second change was followed and other loads were known as a cause. Turns short at the end of a
+drift, with the first record after an exchange, or else 10 to 60 records after the plant did something (in
+one of three pairs with the same record).
 """
 
 
 REMARKS: Final = """
-**Falls short.** Turns that short after a second motor was connected are found in a third of the motors: what
-the two draw together does not lie on the circle of the one in the file, so that little tells shorted turns
-from another asymmetry. Turns that short with the same record in which something else changes are told beside
-it only where they are the larger part. A capacitor that loses an element often stays between `other-load` and
-`shorted-turns`: the motor is on `watch`, but which it is takes a record at another load, or the feeder's
-current with the motor at rest. Sound motors that are called in pairs are small, with levels just above the
-limit. A level of 5 % lies outside its interval more often than one in twenty: the signature is taken at 1 %.
+**Falls short.** Turns that short after a second motor was connected are found in a
+third of the motors: what the two draw together is not on the circle of the one in the file. Turns that
+short with the record in which something else changes are told only where they are the larger part. A
+capacitor that loses an element often stays between `other-load` and `shorted-turns`, on `watch`: a record
+at another load, or the feeder's current at rest, tells which. Sound motors called in pairs are small,
+with levels just above the limit. A level of 5 % lies outside its interval more often than one in twenty.
 """
 
 
@@ -259,7 +254,8 @@ def main() -> None:
         text = PREAMBLE.format(
             motors=chosen.motors, first=chosen.first, last=chosen.first + chosen.motors - 1
         )
-        chosen.page.write_text(text + "\n" + "\n".join(lines) + "\n" + REMARKS, encoding="utf-8")
+        kept = with_tables_as_files(chosen.page, chosen.page.stem, lines)
+        chosen.page.write_text(text + "\n" + "\n".join(kept) + "\n" + REMARKS, encoding="utf-8")
 
 
 if __name__ == "__main__":

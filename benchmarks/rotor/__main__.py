@@ -15,19 +15,25 @@ from benchmarks.rotor import (
 )
 
 PAGE = Path("docs/evidence/rotor.md")
-PREAMBLE = """# Broken rotor bars
+PREAMBLE = """\
+# Broken rotor bars
 
-What one record tells of the rotor's cage, on simulated motors of 0.8, 7.5 and 37 kW. Their cages have 28
-bars and rings with physics of their own (`ied_sim.motor.cage`). Every operation draws its voltage,
-frequency, unbalance up to 2 %, harmonics up to 3 %, noise up to 1 % of rated and an inertia of one to six
-times that of the motor. The examination knows every parameter with an error of up to 10 %, the inertia
-within half to twice, and relays with gain errors up to 1 %. A load that swings does so by 1 to 10 % of the
-rated torque. States and figures are those of `core.rotor`: severity is the asymmetry of the rotor's
-resistance. Fault means that its 95 % interval lies above -36 dB, watch that the severity lies above -42 dB.
+Asked: are broken bars found, and how often is a sound rotor called? Motors of 0.8, 7.5 and 37 kW are
+simulated with cages of 28 bars and their rings (`ied_sim.motor.cage`). Unbalance is up to 2 %, harmonics up
+to 3 %, noise up to 1 %, inertia one to six times the motor's; parameters are known within 10 %, inertia
+within half to twice. Swinging loads swing by 1 to 10 % of rated torque. Severity is the asymmetry of the
+rotor's resistance. Fault: its 95 % interval lies above -36 dB. Watch: the severity lies above -42 dB.
+Unsupported counts refused records too.
 
-Unsupported counts what the quality gate refuses, too.
+| | found |
+| --- | --- |
+| one of 28 bars broken, 50 % load and above, 10 s | fault in 72 of 72 |
+| severity, 10 s | within -0.3 and +1.6 dB; interval holds 288 of 288 |
+| sound rotors called, swinging loads included | 0 of 3,600 |
+| one broken bar beside shorted turns | fault in 133 of 144, 11 unsupported |
 
-No motor with a broken bar was at hand: what is said of them rests on simulation.
+**Falls short.** In 1.28 s the larger motors at part load are unsupported. No motor with a broken bar was at
+hand: this rests on simulation. A measured mill of 1.28 s was `watch` in 8 of 100 records.
 """
 SUBJECTS = {
     "detection": detection.sections,

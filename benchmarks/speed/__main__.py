@@ -26,16 +26,22 @@ from core.speed.telling import learn, tell_speed
 
 PAGE = Path("docs/evidence/speed.md")
 COMMAND = "python -m benchmarks.speed DIR"
-PREAMBLE = """# Speed from the line currents
+PREAMBLE = """\
+# Speed from the line currents
 
-How far the speed that `core.speed` sees in currents is from an encoder. The motor drives a mill: 60 Hz, 2
-pole pairs, slips of 0.9 to 1.4 %, 8 kHz. The recordings do not belong to the project. Periods of the encoder
-that lie 35 counts and more beside a short running median are glitches and are replaced. The number of bars is
-not given: it is learnt, and with it the lines, on one half of the recordings. The other half is tried; then
-the halves change places. Errors are those of both together. [How it works](../explanation/speed.md).
+Asked: how far is the speed that `core.speed` sees in currents from an encoder? The motor drives a mill: 60
+Hz, 2 pole pairs, slips of 0.9 to 1.4 %, 8 kHz. The recordings do not belong to the project. The number of
+bars is not given: it is learnt, with the lines, on one half of the recordings and tried on the other, both
+ways. Glitches of the encoder (35 counts beside a short running median) are replaced. [How it
+works](../explanation/speed.md).
 
-The constants of the method (window, widths, priors, what a speed that moves adds to the interval) were set
-with these same recordings. Others were not at hand.
+| records | seen | error, 95 % | worst | covered |
+| --- | --- | --- | --- | --- |
+| 0.5 s | 260 of 260 | 0.20 rpm | 0.72 rpm | 98 % |
+| 2 s | 64 of 64 | 0.11 rpm | 0.22 rpm | 98 % |
+
+**Falls short.** The method's constants were set with these same recordings; no others were at hand. At 2
+kHz nothing is seen. One record of 0.5 s tells the number of bars in none of 33 cases.
 """
 LENGTH_S = 0.5
 GOAL_RPM, GOAL_WORST_RPM, GOAL_COVERED = 0.27, 1.4, 0.95

@@ -29,6 +29,10 @@ PREAMBLE = """\
 
 Recordings are kept in a folder, or
 [in a bucket of an S3-compatible store](../how-to/several-hosts.md#recordings-in-an-s3-compatible-store).
+Asked:
+what does each cost? A record of 200 kB is stored in 1.8 ms in a folder and 8.2 ms in a bucket, and read in
+0.08 and 9.8 ms; one of 20 MB is stored in 23 and 89 ms, and read in 1.8 and 42 ms. **Falls short**: the
+bucket is moto's on the same machine, so that neither a network nor a store's disks are in the figures.
 """
 COMMAND = "python -m benchmarks.storage.recording_stores [--write]"
 SIZES = {"200 kB": (200_000, 40), "20 MB": (20_000_000, 12)}

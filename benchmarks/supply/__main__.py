@@ -11,8 +11,13 @@ SUBJECTS = {"accuracy": accuracy, "relay": relay, "winding": winding, "speed": s
 PREAMBLE = """\
 # Supply and heat
 
-Written by `python -m benchmarks.supply`; each section names the command that repeats it. What is measured is
-defined in [Supply](../reference/supply.md) and in [Load and heat](../reference/load.md).
+Asked: are the figures of [Supply](../reference/supply.md) and [Load and heat](../reference/load.md) right?
+Written by `python -m benchmarks.supply`. Unbalance is right within 0.009 %, THD within 0.33 points in 0.2
+s; the thermal element is within 0.18 % of the times of an SEL manual; a winding's temperature is within 8 K
+in 95 % of pairs at the same load.
+
+**Falls short.** At loads up to 0.1 apart a temperature is told in 29 % of the pairs only, with errors up to
+24.5 K.
 """
 
 

@@ -12,7 +12,7 @@ from tests.chaos.account import Folder, Request, Row
 from tests.chaos.ledger import File, Ledger, RelayRecord
 from tests.chaos.plant import make_plant
 from tests.chaos.schedule import make_schedule
-from tests.chaos.track_record import BEGIN, END, PAGE, rewrite
+from tests.chaos.track_record import FAULTS, FOLDER, HEADER, RUNS, write
 from tests.chaos.triggers import Asked, Triggers
 from tests.chaos.verdict import of_contents, of_records, of_triggers
 
@@ -138,6 +138,21 @@ def test_a_seed_is_a_schedule(tmp_path: Path) -> None:
     assert first != other
 
 
-def test_the_page_has_a_place_for_its_runs() -> None:
-    page = PAGE.read_text(encoding="utf-8")
-    assert rewrite(page, []).count(BEGIN) == rewrite(page, []).count(END) == 1
+def test_runs_are_written_as_the_page_has_them(tmp_path: Path) -> None:
+    result = {
+        "command": "make chaos SEED=1", "profiles": {"rdre": 2}, "faults": {"link-cut": 3, "disk-full": 1},
+        "records_made": 7, "half_records": 0, "lost": 0, "doubled": 0, "falsified": 0, "breaches": [],
+        "pulled_bytes": 1_500_000, "made_to_stored_s": {"median": 0.5, "p95": 2.0, "longest": 3.0},
+        "integrity": "ok",
+    }  # fmt: skip
+    write(tmp_path, [result])
+
+    header, row = (tmp_path / RUNS).read_text(encoding="utf-8").splitlines()
+    assert header == (FOLDER / RUNS).read_text(encoding="utf-8").splitlines()[0]
+    assert header.count(",") >= len(HEADER) - 1
+    assert row.startswith("make chaos SEED=1,2 rdre,4,")
+    assert (tmp_path / FAULTS).read_text(encoding="utf-8").split() == [
+        "fault,times",
+        "link-cut,3",
+        "disk-full,1",
+    ]

@@ -68,9 +68,9 @@ def test_what_falls_short_is_told_first() -> None:
 
     top = page[: page.index("## How the records are made")]
     assert "All sections are measured at full size, on the same code." in top
-    assert "| [Shorted turns found](#shorted-turns-found) | 2 | 1 | **1** |" in top
-    assert "| [False alarms](#false-alarms) | 1 | 1 | 0 |" in top
-    assert f"| 1 %: seen within 10 | at least 97 % | {short.found} |" in top
+    assert "- [Shorted turns found](#shorted-turns-found): 1 of 2 met. **Falls short**: 1 %: seen" in top
+    assert "1 %: seen within 10 (96 of 100)" in top
+    assert "- [False alarms](#false-alarms): 1 of 1 met\n" in top
     assert f"| 1 %: seen within 10 | at least 97 % | {short.found} | {SHORT} |" in page
     assert f"| alarms | none | {met.found} | {MET} |" in page
     assert "200 motors a row." in page
@@ -80,7 +80,7 @@ def test_what_was_not_measured_is_visible() -> None:
     page = page_text(SECTIONS, {"one": measured(at_most("alarms", 0, 50, 0.0), share=0.5)})
 
     assert "1 of 2 sections are measured at 50% of the full size, on the same code." in page
-    assert "| [False alarms](#false-alarms) | - | - | - | **not measured** |" in page
+    assert "- [False alarms](#false-alarms): **not measured**" in page
     assert "## False alarms\n\n**Not measured.**" in page
     assert "100 motors a row." in page
 
@@ -106,8 +106,14 @@ def test_a_run_of_one_section_leaves_the_others(tmp_path: Path) -> None:
     assert "No figure is asked for." in text
 
 
-def test_the_page_says_what_was_measured() -> None:
-    text = page_text(SECTIONS_OF_THE_PAGE, read_measured(PAGE))
-    assert PAGE.read_text(encoding="utf-8") == text, (
+def test_the_page_and_its_tables_say_what_was_measured(tmp_path: Path) -> None:
+    page = tmp_path / PAGE.name
+    write_page(page, SECTIONS_OF_THE_PAGE, read_measured(PAGE))
+
+    def written(folder: Path) -> dict[str, str]:
+        files = [folder / PAGE.name, *sorted((folder / "data").glob("condition-*.csv"))]
+        return {file.name: file.read_text(encoding="utf-8") for file in files}
+
+    assert written(PAGE.parent) == written(tmp_path), (
         "docs/evidence/condition.md is written by python -m benchmarks.condition, or --write-page"
     )
