@@ -1,7 +1,8 @@
 """Write the commands and their options into docs/reference/commands.md, from the programs: `make docs`."""
 
 import re
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Container, Iterator
 
 import typer
 
@@ -12,6 +13,9 @@ from tests.docs.pages import ROOT, between_markers
 PAGE = ROOT / "docs" / "reference" / "commands.md"
 TYPES = re.compile(r" <(?:bool|int|float|str|path|list\[\w+\])>")
 """Names of Python types, which tell a reader nothing."""
+
+SHARED_BY = 4
+"""An option that so many commands have alike is explained once."""
 
 ESCAPED = r"\["
 """How help texts write a bracket that is no mark-up."""
@@ -36,26 +40,37 @@ def _commands_of(words: str, group: typer.core.TyperGroup) -> Iterator[tuple[str
             yield f"{words} {name}", command
 
 
-def lines(name: str, command: typer.core.TyperCommand) -> Iterator[str]:
-    """Yield a command's section: what it does, and a table of its arguments and options."""
-    yield f"## {name}"
-    yield ""
-    yield command.help or ""
-    yield ""
-    yield "| Argument or option | Meaning |"
-    yield "|---|---|"
+def options(name: str, command: typer.core.TyperCommand) -> Iterator[tuple[str, str]]:
+    """Yield a command's arguments and options, each with its meaning."""
     context = typer.Context(command, info_name=name)
     for parameter in command.params:
         record = parameter.get_help_record(context)
         if record is not None:
-            usage, meaning = (text.replace(ESCAPED, "[").replace("|", "\\|") for text in record)
-            yield f"| `{TYPES.sub('', usage)}` | {meaning.strip()} |"
+            usage, meaning = (text.replace(ESCAPED, "[") for text in record)
+            yield f"`{TYPES.sub('', usage)}`", meaning.strip()
+
+
+def lines(name: str, command: typer.core.TyperCommand, shared: Container[tuple[str, str]]) -> Iterator[str]:
+    """Yield a command's section: what it does, its own arguments and options, and those shared with others."""
+    found = list(options(name, command))
+    yield f"## {name}"
+    yield ""
+    yield command.help or ""
+    yield ""
+    yield from (f"- {usage}: {meaning}" for usage, meaning in found if (usage, meaning) not in shared)
+    others = [usage for usage, meaning in found if (usage, meaning) in shared]
+    if others:
+        yield f"- Shared: {', '.join(others)}"
     yield ""
 
 
 def written(page: str) -> str:
     """Return the page with its commands made anew between their markers."""
-    made = [line for name, command in commands() for line in lines(name, command)]
+    every = dict(commands())
+    counts = Counter(option for name, command in every.items() for option in options(name, command))
+    shared = {option for option, count in counts.items() if count >= SHARED_BY}
+    made = ["## Shared options", "", *(f"- {usage}: {meaning}" for usage, meaning in sorted(shared)), ""]
+    made += [line for name, command in every.items() for line in lines(name, command, shared)]
     return between_markers(page, "commands", made)
 
 
