@@ -38,12 +38,14 @@ def permission_rows() -> Iterator[str]:
 
 
 def route_rows(*, of_pages: bool) -> Iterator[str]:
-    """Yield the lines of the table of the API's routes, or of those of the pages."""
-    yield f"| {'Page' if of_pages else 'Route'} | {HEAD} | Needs |"
-    yield f"{LINE}|---|"
+    """Yield what needs each permission: the API's routes, or those of the pages."""
+    needing: dict[Permission | None, list[str]] = {}
     for method, path, needed in sorted(_routes(of_pages=of_pages), key=lambda route: (route[1], route[0])):
-        marks = " | ".join("*" for _ in Role) if needed is None else _marks(needed)
-        yield f"| `{method} {path}` | {marks} | {'-' if needed is None else f'`{needed}`'} |"
+        needing.setdefault(needed, []).append(f"`{method} {path}`")
+    for permission in (None, *Permission):
+        if permission in needing:
+            who = "anybody" if permission is None else f"`{permission}`"
+            yield f"- {who}: {', '.join(needing[permission])}"
 
 
 def written(page: str) -> str:
