@@ -1,4 +1,4 @@
-"""The table of what raises an alarm, on the page of the alarms."""
+"""The table of what raises an alarm, on the page of the alarms. The consequence stands at each alarm alone."""
 
 from collections.abc import Iterator
 
@@ -16,10 +16,10 @@ def table() -> str:
 
 
 def _rows() -> Iterator[str]:
-    yield "| Alarm | Priority | Cause | Consequence | What to do | Is over when |"
-    yield "|---|---|---|---|---|---|"
+    yield "| Alarm | Priority | Cause | What to do | Is over when |"
+    yield "|---|---|---|---|---|"
     for kind, told in CATALOGUE.items():
-        cells = (f"`{kind}`", told.priority, told.cause, told.consequence, told.action, told.over)
+        cells = (f"`{kind}`", told.priority, told.cause, told.action, told.over)
         yield f"| {' | '.join(cells)} |"
 
 

@@ -21,7 +21,10 @@ Arrows = frozenset[tuple[str, str]]
 
 @dataclass(frozen=True)
 class Drawing:
-    """One picture: the rooms inside `inside`, and `beside` them the packages that they stand on."""
+    """One picture: the rooms inside `inside`, and `beside` them the packages that they stand on.
+
+    Only the picture with packages beside has a table of its rooms: inside a package their docstrings are at hand.
+    """
 
     inside: str
     beside: tuple[str, ...] = ()
@@ -129,7 +132,9 @@ def drawn(page: str) -> str:
     graph = grimp.build_graph(*PACKAGES)
     for name, drawing in DRAWINGS.items():
         shown = rooms(graph, drawing)
-        lines = [*flowchart(drawing, shown, reduced(arrows(graph, shown))), "", *table(shown)]
+        lines = list(flowchart(drawing, shown, reduced(arrows(graph, shown))))
+        if drawing.beside:
+            lines += ["", *table(shown)]
         page = between_markers(page, f"drawing {name}", lines)
     return page
 
