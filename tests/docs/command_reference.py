@@ -14,8 +14,8 @@ PAGE = ROOT / "docs" / "reference" / "commands.md"
 TYPES = re.compile(r" <(?:bool|int|float|str|path|list\[\w+\])>")
 """Names of Python types, which tell a reader nothing."""
 
-SHARED_BY = 4
-"""An option that so many commands have alike is explained once."""
+SHARED_BY = 2
+"""An option that so many commands have alike is explained once, in its most common meaning."""
 
 ESCAPED = r"\["
 """How help texts write a bracket that is no mark-up."""
@@ -68,7 +68,8 @@ def written(page: str) -> str:
     """Return the page with its commands made anew between their markers."""
     every = dict(commands())
     counts = Counter(option for name, command in every.items() for option in options(name, command))
-    shared = {option for option, count in counts.items() if count >= SHARED_BY}
+    commonest = {usage: (usage, meaning) for (usage, meaning), _ in reversed(counts.most_common())}
+    shared = {option for option in commonest.values() if counts[option] >= SHARED_BY}
     made = ["## Shared options", "", *(f"- {usage}: {meaning}" for usage, meaning in sorted(shared)), ""]
     made += [line for name, command in every.items() for line in lines(name, command, shared)]
     return between_markers(page, "commands", made)
