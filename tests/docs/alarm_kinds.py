@@ -1,4 +1,4 @@
-"""The table of what raises an alarm, on the page of the alarms. The consequence stands at each alarm alone."""
+"""The table of what raises an alarm, on its page; the consequence stands at each alarm alone."""
 
 from collections.abc import Iterator
 

@@ -23,7 +23,7 @@ Arrows = frozenset[tuple[str, str]]
 class Drawing:
     """One picture: the rooms inside `inside`, and `beside` them the packages that they stand on.
 
-    Only the picture with packages beside has a table of its rooms: inside a package their docstrings are at hand.
+    Only a picture with packages beside has a table of its rooms: inside one their docstrings are at hand.
     """
 
     inside: str

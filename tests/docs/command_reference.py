@@ -51,7 +51,7 @@ def options(name: str, command: typer.core.TyperCommand) -> Iterator[tuple[str, 
 
 
 def lines(name: str, command: typer.core.TyperCommand, shared: Container[tuple[str, str]]) -> Iterator[str]:
-    """Yield a command's section: what it does, its own arguments and options, and those shared with others."""
+    """Yield a command's section: what it does, its own arguments and options, and those that are shared."""
     found = list(options(name, command))
     yield f"## {name}"
     yield ""
