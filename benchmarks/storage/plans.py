@@ -38,8 +38,7 @@ GROWING = frozenset(
         "starts",
         "relay_events",
         "relay_statistics",
-        "supply_figures",
-        "swing_findings",
+        "record_figures",
     }
 )
 """Tables that have more rows every day."""

@@ -2341,10 +2341,11 @@ class TrendPoint(TypedDict):
     """
     One recording's figure; `value` is null where the recording does not tell it.
 
-    ci95: 95 % interval from noise, sensors and parameters, of all but theta_f. Of mu_f only: scatter95, from
-    the record's own scatter alone; detection_limit, the level that nine of ten such recordings show.
-    verdict: of the recording alone; null, and replaced by state, kind and phase, where the figure is one of
-    the motor's condition from that recording on.
+    ci95: 95 % interval from noise, sensors and parameters, where the figure has one. scatter95: of mu_f only,
+    from the record's own scatter alone. detection_limit: what nine of ten such recordings show.
+    verdict: of the recording alone, beside figures of the winding. state: of the stator from that recording
+    on, with kind and phase, beside figures of the motor's condition; what the recording shows of the rotor,
+    beside figures of that. reasons: what limits figures of rotor, air gap, load and supply.
     """
 
     time: str
@@ -2354,9 +2355,10 @@ class TrendPoint(TypedDict):
     detection_limit: float | None
     verdict: Verdict | None
     recording_id: str
-    state: NotRequired[State | None]
+    state: NotRequired[State | RotorState | None]
     kind: NotRequired[Kind | None]
     phase: NotRequired[Literal["a", "b", "c"] | None]
+    reasons: NotRequired[list[str] | None]
 
 
 class Waveform(TypedDict):

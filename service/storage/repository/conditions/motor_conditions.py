@@ -29,8 +29,8 @@ from service.storage.repository.alarms.drift import settle_drift_alarm
 from service.storage.repository.alarms.parts import settle_part_alarms
 from service.storage.repository.alarms.starts import NotableStarts, notable_starts
 from service.storage.repository.conditions.conditions import conditions_of
+from service.storage.repository.history.record_figures import latest_figures
 from service.storage.repository.history.rotor_course import course_condition, latest_time_ns
-from service.storage.repository.history.supply import latest_figures
 from service.storage.repository.sessions import Sessions, found, record_of
 
 

@@ -105,6 +105,19 @@ def test_records_of_an_older_version_are_judged_as_they_came(
     assert recorded.repository.rotor_condition(MOTOR).state is RotorState.WATCH
 
 
+def test_a_record_that_leaves_a_baseline_is_compared_with_it(recorded: ExaminedRecordings) -> None:
+    """The level stays, and the record lies behind those that are judged again for their place."""
+    other_load = replace(_sound(-70.0), load_bin=6)
+    loud = replace(other_load, state=RotorState.WATCH)
+    third = _sound(-43.5, 3)
+    for finding in (_sound(-48.0, 3), _sound(-48.0, 3), *[other_load] * 4, third, loud):
+        recorded.add(finding)
+    assert recorded.repository.rotor_condition(MOTOR).state is RotorState.HEALTHY
+    recorded.add(_sound(-48.0, 3), at_ns=NOW_NS)
+    assert recorded.repository.rotor_condition(MOTOR).state is RotorState.WATCH
+    assert recorded.repository.rotor_condition(MOTOR).since_ns == NOW_NS + 8 * SECOND_NS
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_however_records_come_and_go_the_condition_is_that_of_all_in_their_order(
     recorded: ExaminedRecordings, seed: int
