@@ -18,7 +18,6 @@ from benchmarks.storage.rows import (
     time_of,
 )
 from core.units import NANOSECONDS_PER_DAY
-from service.storage.migrations.versions.v0040_condition_days import FILL
 from service.storage.models import Base
 
 CHANGED = 50
@@ -46,7 +45,7 @@ _CHANGE_COLUMNS = (
     "id", "motor", "time_ns", "recording_id", "event_id", "state", "kind", "phase", "mu_f", "mu_f_ci95_low",
     "mu_f_ci95_high", "change", "change_ci95_low", "change_ci95_high",
 )  # fmt: skip
-_EVENT_COLUMNS = ("id", "motor", "time_ns", "kind", "reason", "by", "made_ns")
+_EVENT_COLUMNS = ("id", "motor", "time_ns", "kind", "reason", "account", "by", "made_ns")
 
 _START_COLUMNS = (
     "recording_id", "motor", "time_ns", "is_from_rest", "acceleration_s", "peak_current_A",
@@ -70,6 +69,13 @@ _STATISTICS_COLUMNS = (
     "motor", "time_ns", "since_ns", "starts", "running_s", "stopped_s", "mean_current_A", "peak_current_A",
     "peak_start_current_A", "longest_start_s", "trips",
 )  # fmt: skip
+
+DAYS = f"""
+    INSERT INTO condition_days (motor, day_ns, records, mu_f_least, mu_f_mean, mu_f_largest)
+    SELECT motor, time_ns - time_ns % {NANOSECONDS_PER_DAY} AS of_day,
+        count(*), min(mu_f), avg(mu_f), max(mu_f)
+    FROM observations WHERE state IS NOT NULL GROUP BY motor, of_day
+"""  # noqa: S608 - the number is our own
 
 HARMONICS = "[1.0,0.001,0.004,0.0,0.03,0.0,0.017,0.0,0.0,0.0,0.006,0.0,0.004,0.0,0.0,0.0,0.002]"
 REASONS = '["no asymmetry of the rotor above -52 dB"]'
@@ -95,7 +101,7 @@ def tables(amounts: Amounts) -> Iterator[Table]:
 def judge(connection: Connection) -> None:
     """Give each motor but the idle one a condition, and all motors their days."""
     judge_motors(connection)
-    connection.execute(text(FILL))
+    connection.execute(text(DAYS))
 
 
 def judge_motors(connection: Connection) -> None:
@@ -141,7 +147,7 @@ def _events(amounts: Amounts) -> Iterator[Row]:
     for number, motor, time_ns in _observed(amounts):
         if number % TOLD == 0:
             event = id_of(EVENT, number)
-            yield event, motor, time_ns + 1, "maintenance", "bearings greased", "ann", time_ns + 1
+            yield event, motor, time_ns + 1, "maintenance", "bearings greased", "ann", "ann", time_ns + 1
 
 
 def _starts(amounts: Amounts) -> Iterator[Row]:

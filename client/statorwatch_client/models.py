@@ -668,16 +668,15 @@ class Note(TypedDict):
     """
     What somebody told of a motor, or what its files tell.
 
-    It happened at `time`; the account `by` told it at `made_time`, perhaps for somebody whom it named. by,
-    withdrawn_by: null where the account was not kept. The condition follows from all but those of kind `note`
-    and those that were withdrawn.
+    It happened at `time`; the account `by` told it at `made_time`, perhaps for somebody whom it named. The
+    condition follows from all but those of kind `note` and those that were withdrawn.
     """
 
     id: str
     motor: str
     kind: EventKind
     text: str
-    by: str | None
+    by: str
     on_behalf_of: str | None
     time: str
     made_time: str
@@ -852,15 +851,14 @@ class PulsationFinding(TypedDict):
 
     load_torque: its amplitude over the rated torque, with load_torque_deviation. noise: what noise makes of
     it, rms. detection_limit: swing that nine of ten such recordings show. What swings once a turn is told by
-    the eccentricity, and at twice the slip by the rotor. Diagnoses of earlier versions have neither deviation
-    nor limit.
+    the eccentricity, and at twice the slip by the rotor.
     """
 
     load_torque: float | None
     noise: float | None
     frequency_hz: float | None
-    load_torque_deviation: NotRequired[float | None]
-    detection_limit: NotRequired[float | None]
+    load_torque_deviation: float | None
+    detection_limit: float | None
     reasons: list[str]
 
 
@@ -2403,7 +2401,7 @@ class Baseline(TypedDict):
     The motor's healthy recordings; empty where it has no baseline.
 
     When they were chosen, why, where that was said, and which of them were in doubt. by: the account that
-    chose them, null where it was not kept; on_behalf_of: whom it named.
+    chose them; on_behalf_of: whom it named.
     """
 
     recordings: list[Recording]
@@ -2502,7 +2500,6 @@ class Diagnosis(TypedDict):
     a motor with slip rings. hypotheses: the causes that the phasors were weighed for, the likeliest first.
     rotor, supply: what it shows of them. classification: which causes are likely, by all that was examined.
     eccentricity, pulsation: what it shows of the air gap, and of a load that swings.
-    Diagnoses of earlier versions lack some: of those that knew only the scatter, ..._ci95 is null.
     """
 
     verdict: Verdict

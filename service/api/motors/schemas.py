@@ -151,7 +151,7 @@ class Baseline(Document):
     """The motor's healthy recordings; empty where it has no baseline.
 
     When they were chosen, why, where that was said, and which of them were in doubt. by: the account that
-    chose them, null where it was not kept; on_behalf_of: whom it named.
+    chose them; on_behalf_of: whom it named.
     """
 
     recordings: Listed[Recording]

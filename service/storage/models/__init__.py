@@ -24,7 +24,6 @@ from service.storage.models.conditions import (
     FoldMarkRow,
     MotorVersionRow,
     ObservationRow,
-    UnobservedRecordingRow,
 )
 from service.storage.models.counts import StandingAlarmCountRow, StateCountRow
 from service.storage.models.deletions import DeletedRemoteRecordRow, DeletionRow, DiscardedFolderRow
@@ -104,7 +103,6 @@ __all__ = [
     "StandingAlarmCountRow",
     "StartRow",
     "StateCountRow",
-    "UnobservedRecordingRow",
     "UserRow",
     "UserSessionRow",
 ]

@@ -30,7 +30,6 @@ from service.storage.records.conditions import (
     FollowedStart,
     MotorVersion,
     RecordObservation,
-    ToObserve,
     TrackedPoint,
 )
 from service.storage.records.deletions import Amount, AppliedRule, DeletedRows, Deletion, OldRecording
@@ -190,7 +189,6 @@ __all__ = [
     "SupplyEntry",
     "SupplyQuantity",
     "SwingEntry",
-    "ToObserve",
     "TotpSecrets",
     "TrackedPoint",
     "UnbalanceEntry",

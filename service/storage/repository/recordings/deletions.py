@@ -29,7 +29,6 @@ from service.storage.models import (
     RecordingRequestRow,
     RecordingRow,
     RemoteRecordRow,
-    UnobservedRecordingRow,
 )
 from service.storage.records import Cursor, Deletion, Page, RemoteRecord
 from service.storage.records.actors import SERVICE, Actor
@@ -239,7 +238,6 @@ def delete_row(
     for link in session.scalars(select(RemoteRecordRow).where(RemoteRecordRow.recording_id == row.id)):
         _remember_listing(session, link.ied, record_of(RemoteRecord, link), deletion.id)
         session.delete(link)
-    session.execute(delete(UnobservedRecordingRow).where(UnobservedRecordingRow.recording_id == row.id))
     if deleted_by is DeletedBy.PERSON:
         forget_observation(session, row.id)
         forget_start(session, row.id)
