@@ -58,6 +58,8 @@ PARTIAL = {
     "ix_rotor_course_time_ns": "condition",
     "ix_rotor_course_load_bin": "condition",
     "ix_rotor_course_condition": "condition",
+    "ix_record_figures_air_gap": "air_gap",
+    "ix_record_figures_supply": "supply",
 }
 """Indexes that have just the rows of one filter, and the column that it is about."""
 

@@ -134,7 +134,7 @@ def _tells(subject: Subject) -> list[ColumnElement[bool] | InstrumentedAttribute
             return [ObservationRow.state.is_not(None)]
         case Subject.ROTOR:
             return []
-        case Subject.AIR_GAP | Subject.LOAD:
+        case Subject.AIR_GAP | Subject.LOAD:  # both are looked for together
             return [RecordFiguresRow.air_gap.is_not(None)]
         case Subject.SUPPLY:
             return [RecordFiguresRow.supply.is_not(None)]
