@@ -14,7 +14,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 # Tests start thousands of processes: none of them is to compile our modules anew, which some images ask for.
 export PYTHONDONTWRITEBYTECODE :=
 # Pages with parts that `make docs` writes from the code.
-MADE_PAGES := $(foreach page,architecture command alarm audit role,tests/docs/test_$(page)_page.py)
+MADE_PAGES := $(foreach page,architecture command alarm audit role quantity,tests/docs/test_$(page)_page.py)
 # docker compose where its engine answers, else nothing; COMPOSE="podman-compose" make compose-test: another one
 COMPOSE ?= $(shell docker compose version >/dev/null 2>&1 && docker info >/dev/null 2>&1 && echo docker compose)
 

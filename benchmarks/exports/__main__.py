@@ -8,6 +8,7 @@ from tempfile import TemporaryDirectory
 from time import perf_counter, process_time
 
 from benchmarks.reporting import table
+from core.quantities import Subject
 from core.units import NANOSECONDS_PER_SECOND
 from service.exports import measurements
 from service.exports.formats import Format
@@ -17,11 +18,10 @@ from service.exports.trends import TrendRow
 from service.exports.writing import pieces
 from service.plant import AveragingStep
 from service.storage import Repository, connect
-from service.storage.records import ConditionPoint, DiagnosisPoint, Sample
+from service.storage.records import Sample
 from testing.memory_folder import memory_folder
-from testing.service.conditions import FAULT, entry_of
 from testing.service.database import make_database
-from testing.service.plants import NOW_NS, fault, two_motor_plant
+from testing.service.plants import NOW_NS, two_motor_plant
 
 ROWS = 100_000
 FEW = 1_000
@@ -98,19 +98,17 @@ def _measurements(wanted: Format, rows: int, url: str) -> Iterator[bytes]:
 
 def _trend(rows: int) -> Iterator[Sequence[TrendRow]]:
     """A trend without a database, each recording with all figures."""
-    said = entry_of(FAULT)
-    figures = {name: getattr(said, name) for name in ("state", "kind", "phase", "mu_f", "change")}
-    diagnosis = fault()
+    level = (0.047, 0.055, 0.049, 0.053, 0.021)
     for first in range(0, rows, 1000):
         batch = []
         for at in range(first, min(first + 1000, rows)):
             time_ns, recording_id = NOW_NS + at * 3600 * NANOSECONDS_PER_SECOND, f"{at:036d}"
-            diagnosed = DiagnosisPoint(
-                time_ns, recording_id, diagnosis.verdict, 0.051 + 1e-6 * at, 0.047, 0.055, 0.05, 0.052,
-                0.021, 1, 0.48 + 1e-7 * at, 0.46, 0.5,
-            )  # fmt: skip
-            point = ConditionPoint(recording_id=recording_id, time_ns=time_ns, **figures)
-            batch.append(TrendRow("PUMP-A1", time_ns, recording_id, diagnosed, point))
+            mu_f, load = 0.051 + 1e-6 * at, 0.48 + 1e-7 * at
+            told: dict[Subject, Sequence[object]] = {
+                Subject.STATOR: ("fault", mu_f, *level, 1, load, 0.46, 0.5),
+                Subject.CONDITION: ("fault", "shorted-turns", "b", mu_f, 0.047, 0.055, mu_f, 0.047, 0.055),
+            }
+            batch.append(TrendRow("PUMP-A1", time_ns, recording_id, told))
         yield batch
 
 

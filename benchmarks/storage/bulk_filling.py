@@ -12,11 +12,9 @@ from benchmarks.storage.plant import plant_of
 from service.storage import Repository, connect, migrate
 
 
-def fill_ten_years(
-    url: str, diagnoses: int, measurements: int, progress: Progress, *, revision: str = "head"
-) -> None:
-    """Migrate the database at this URL to a revision, and put a plant and ten years of it there."""
-    migrate(url, revision)
+def fill_ten_years(url: str, diagnoses: int, measurements: int, progress: Progress) -> None:
+    """Make the tables in the database at this URL, and put a plant and ten years of it there."""
+    migrate(url)
     engine = connect(url)
     _write_plant(engine)
     dialect = engine.dialect.name

@@ -18,7 +18,6 @@ from benchmarks.storage.rows import (
     time_of,
 )
 from core.units import NANOSECONDS_PER_DAY
-from service.storage.migrations.versions.v0040_condition_days import FILL
 from service.storage.models import Base
 
 CHANGED = 50
@@ -46,7 +45,7 @@ _CHANGE_COLUMNS = (
     "id", "motor", "time_ns", "recording_id", "event_id", "state", "kind", "phase", "mu_f", "mu_f_ci95_low",
     "mu_f_ci95_high", "change", "change_ci95_low", "change_ci95_high",
 )  # fmt: skip
-_EVENT_COLUMNS = ("id", "motor", "time_ns", "kind", "reason", "by", "made_ns")
+_EVENT_COLUMNS = ("id", "motor", "time_ns", "kind", "reason", "account", "by", "made_ns")
 
 _START_COLUMNS = (
     "recording_id", "motor", "time_ns", "is_from_rest", "acceleration_s", "peak_current_A",
@@ -58,25 +57,33 @@ _ROTOR_COLUMNS = (
     "severity_dB_ci95_low", "severity_dB_ci95_high", "detection_limit_dB", "slip", "load_level", "load_bin",
     "duration_s", "load_oscillation_dB", "reasons", "condition",
 )  # fmt: skip
-_SUPPLY_COLUMNS = (
-    "recording_id", "motor", "time_ns", "frequency_hz", "line_voltages_V", "voltage_unbalance_iec",
-    "voltage_unbalance_nema", "derating", "voltage_deviation", "thd_voltage", "harmonic_voltage_factor",
-    "voltage_harmonics", "line_currents_A", "current_unbalance", "thd_current", "current_harmonics",
-    "active_power_W", "power_factor", "duration_s", "reasons",
-)  # fmt: skip
-_SWING_COLUMNS = (
-    "recording_id", "motor", "time_ns", "gap_permeance_ripple", "gap_standard_deviation",
+_FIGURE_COLUMNS = (
+    "recording_id", "motor", "time_ns", "gap_permeance_ripple", "gap_permeance_ripple_deviation",
     "gap_detection_limit", "gap_lower_sideband_dB", "gap_upper_sideband_dB", "turn_load_torque",
-    "turn_load_torque_deviation", "turn_frequency_hz", "gap_reasons", "load_torque", "load_noise",
-    "load_frequency_hz", "load_torque_deviation", "load_detection_limit", "load_reasons",
+    "turn_load_torque_deviation", "turn_frequency_hz", "air_gap", "swing_load_torque", "swing_noise",
+    "swing_frequency_hz", "swing_load_torque_deviation", "swing_detection_limit", "load", "frequency_hz",
+    "voltage_unbalance_iec", "voltage_unbalance_nema", "derating", "voltage_deviation", "thd_voltage",
+    "harmonic_voltage_factor", "current_unbalance", "thd_current", "active_power_W", "power_factor", "supply",
 )  # fmt: skip
 _STATISTICS_COLUMNS = (
     "motor", "time_ns", "since_ns", "starts", "running_s", "stopped_s", "mean_current_A", "peak_current_A",
     "peak_start_current_A", "longest_start_s", "trips",
 )  # fmt: skip
 
+DAYS = f"""
+    INSERT INTO condition_days (motor, day_ns, records, mu_f_least, mu_f_mean, mu_f_largest)
+    SELECT motor, time_ns - time_ns % {NANOSECONDS_PER_DAY} AS of_day,
+        count(*), min(mu_f), avg(mu_f), max(mu_f)
+    FROM observations WHERE state IS NOT NULL GROUP BY motor, of_day
+"""  # noqa: S608 - the number is our own
+
 HARMONICS = "[1.0,0.001,0.004,0.0,0.03,0.0,0.017,0.0,0.0,0.0,0.006,0.0,0.004,0.0,0.0,0.0,0.002]"
 REASONS = '["no asymmetry of the rotor above -52 dB"]'
+NO_REASONS = '{"reasons":[]}'
+SUPPLY_DETAILS = (
+    f'{{"line_voltages_V":[401.0,399.5,396.25],"voltage_harmonics":{HARMONICS},"line_currents_A":[1.5,1.48,1.53],'
+    f'"current_harmonics":{HARMONICS},"duration_s":10.0,"reasons":[]}}'
+)
 
 
 def tables(amounts: Amounts) -> Iterator[Table]:
@@ -86,8 +93,7 @@ def tables(amounts: Amounts) -> Iterator[Table]:
     yield Table("condition_events", _EVENT_COLUMNS, _events(amounts))
     yield Table("starts", _START_COLUMNS, _starts(amounts))
     yield Table("rotor_findings", _ROTOR_COLUMNS, _rotor_findings(amounts))
-    yield Table("supply_figures", _SUPPLY_COLUMNS, _supply_figures(amounts))
-    yield Table("swing_findings", _SWING_COLUMNS, _swing_findings(amounts))
+    yield Table("record_figures", _FIGURE_COLUMNS, _record_figures(amounts))
     yield Table("relay_statistics", _STATISTICS_COLUMNS, _relay_statistics(amounts))
     yield Table("relay_events", ("motor", "kind", "time_ns"), _relay_events(amounts))
 
@@ -95,7 +101,7 @@ def tables(amounts: Amounts) -> Iterator[Table]:
 def judge(connection: Connection) -> None:
     """Give each motor but the idle one a condition, and all motors their days."""
     judge_motors(connection)
-    connection.execute(text(FILL))
+    connection.execute(text(DAYS))
 
 
 def judge_motors(connection: Connection) -> None:
@@ -141,7 +147,7 @@ def _events(amounts: Amounts) -> Iterator[Row]:
     for number, motor, time_ns in _observed(amounts):
         if number % TOLD == 0:
             event = id_of(EVENT, number)
-            yield event, motor, time_ns + 1, "maintenance", "bearings greased", "ann", time_ns + 1
+            yield event, motor, time_ns + 1, "maintenance", "bearings greased", "ann", "ann", time_ns + 1
 
 
 def _starts(amounts: Amounts) -> Iterator[Row]:
@@ -164,22 +170,13 @@ def _rotor_findings(amounts: Amounts) -> Iterator[Row]:
         )  # fmt: skip
 
 
-def _supply_figures(amounts: Amounts) -> Iterator[Row]:
+def _record_figures(amounts: Amounts) -> Iterator[Row]:
     for number, motor, time_ns in _observed(amounts):
-        unbalance = number % 89 / 10_000
-        yield (
-            id_of(RECORDING, number), motor, time_ns, 50.02, "[401.0,399.5,396.25]", unbalance, unbalance,
-            1.0, -0.003, 0.021, 0.0085, HARMONICS, "[1.5,1.48,1.53]", 0.02, 0.035, HARMONICS, 612.5, 0.61,
-            10.0, "[]",
-        )  # fmt: skip
-
-
-def _swing_findings(amounts: Amounts) -> Iterator[Row]:
-    for number, motor, time_ns in _observed(amounts):
-        ripple = number % 83 / 40_000
+        ripple, unbalance = number % 83 / 40_000, number % 89 / 10_000
         yield (
             id_of(RECORDING, number), motor, time_ns, ripple, 0.001, 0.0035, -58.0, -61.5, 0.002, 0.001,
-            24.25, "[]", 0.003, 0.0008, 4.125, 0.0006, 0.004, "[]",
+            24.25, NO_REASONS, 0.003, 0.0008, 4.125, 0.0006, 0.004, NO_REASONS, 50.02, unbalance, unbalance,
+            1.0, -0.003, 0.021, 0.0085, 0.02, 0.035, 612.5, 0.61, SUPPLY_DETAILS,
         )  # fmt: skip
 
 

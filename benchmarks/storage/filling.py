@@ -4,7 +4,7 @@ import sqlite3
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 
-from sqlalchemy import Connection, Engine, inspect, text
+from sqlalchemy import Connection, Engine, text
 
 from benchmarks.storage import condition_rows, rows, upkeep_rows
 from benchmarks.storage.plant import plant_of
@@ -99,10 +99,11 @@ def _copy(connection: Connection, table: Table) -> int:
 
 @contextmanager
 def without_indexes(connection: Connection, progress: Progress) -> Iterator[None]:
-    """Drop the indexes that are no constraints, and make them again."""
+    """Drop the indexes that are no constraints, and make them again; those of partitions follow."""
     query = text(
-        "SELECT indexname, indexdef FROM pg_indexes WHERE schemaname = 'public'"
+        "SELECT indexname, replace(indexdef, ' ON ONLY ', ' ON ') FROM pg_indexes WHERE schemaname = 'public'"
         " AND indexname NOT IN (SELECT conname FROM pg_constraint)"
+        " AND indexname NOT IN (SELECT relname FROM pg_class WHERE relispartition)"
     )
     indexes = connection.execute(query).all()
     for name, _statement in indexes:
@@ -121,6 +122,5 @@ def _count(connection: Connection) -> None:
             text(f"UPDATE state_counts SET number = ({count}) WHERE counted_table = :table"),  # noqa: S608
             {"table": table},
         )
-    if inspect(connection).has_table("standing_alarm_counts"):  # older versions count each time
-        standing = "SELECT ied, kind, count(*) FROM alarms WHERE cleared_ns IS NULL GROUP BY ied, kind"
-        connection.execute(text(f"INSERT INTO standing_alarm_counts {standing}"))
+    standing = "SELECT ied, kind, count(*) FROM alarms WHERE cleared_ns IS NULL GROUP BY ied, kind"
+    connection.execute(text(f"INSERT INTO standing_alarm_counts {standing}"))

@@ -38,8 +38,7 @@ GROWING = frozenset(
         "starts",
         "relay_events",
         "relay_statistics",
-        "supply_figures",
-        "swing_findings",
+        "record_figures",
     }
 )
 """Tables that have more rows every day."""
@@ -59,6 +58,8 @@ PARTIAL = {
     "ix_rotor_course_time_ns": "condition",
     "ix_rotor_course_load_bin": "condition",
     "ix_rotor_course_condition": "condition",
+    "ix_record_figures_air_gap": "air_gap",
+    "ix_record_figures_supply": "supply",
 }
 """Indexes that have just the rows of one filter, and the column that it is about."""
 

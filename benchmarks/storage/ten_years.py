@@ -1,14 +1,14 @@
-"""Ten years of a plant of 500 motors: how long answers take, the size on disk, vacuum, and the migration.
+"""Ten years of a plant of 500 motors: how long answers take, the size on disk, and vacuum.
 
     python -m benchmarks.storage.ten_years --directory DIR [--database sqlite|postgresql] [--part 1.0]
-                                           [--from-revision 0050] [--turns 100] [--pause 0.5] [--processes 1]
+                                           [--turns 100] [--pause 0.5] [--processes 1]
 
 The whole are ten million diagnoses and a hundred million measured values; --part 0.1 is a tenth of both. It
-fills a database in DIR with the tables of a revision, migrates it, and starts the service's site on it in a
-process of its own. Eight clients then ask at once, each again and again after a pause that is drawn for it
-(half to one and a half times --pause), since nobody waits for the others. The service answers with one
-process; --processes spreads the clients over more, to see what a second one would give. The exit code is 1
-where a goal is missed. The database stays in DIR, and the next run takes it as it is.
+fills a database in DIR and starts the service's site on it in a process of its own. Eight clients then ask at
+once, each again and again after a pause that is drawn for it (half to one and a half times --pause), since
+nobody waits for the others. The service answers with one process; --processes spreads the clients over more,
+to see what a second one would give. The exit code is 1 where a goal is missed. The database stays in DIR, and
+the next run takes it as it is.
 """
 
 import argparse
@@ -32,7 +32,7 @@ from benchmarks.storage.plant import motor_name
 from benchmarks.web.answers import Site, serving
 from core.time_stamps import rfc3339
 from core.units import NANOSECONDS_PER_SECOND
-from service.storage import connect, migrate
+from service.storage import connect
 from testing.service.postgresql import PostgresServer, binaries
 
 DIAGNOSES = 10_000_000
@@ -183,7 +183,7 @@ def vacuum(engine: Engine) -> None:
 
 
 def run(url: str, arguments: argparse.Namespace, directory: Path) -> int:
-    """Fill, migrate, ask and vacuum; print tables; return 1 where a goal is missed."""
+    """Fill, ask and vacuum; print tables; return 1 where a goal is missed."""
     begun_s = time.perf_counter()
 
     def progress(line: str) -> None:
@@ -192,10 +192,9 @@ def run(url: str, arguments: argparse.Namespace, directory: Path) -> int:
     diagnoses, measurements = (round(arguments.part * one) for one in (DIAGNOSES, MEASUREMENTS))
     noted = directory / "filled"
     if not noted.exists():
-        fill_ten_years(url, diagnoses, measurements, progress, revision=arguments.from_revision)
+        fill_ten_years(url, diagnoses, measurements, progress)
         noted.touch()
     print(f"{diagnoses:,} diagnoses, {measurements:,} measured values, {MOTORS} motors")
-    _timed(f"migration from {arguments.from_revision}", lambda: migrate(url))
     engine = connect(url)
     found = []
     with ExitStack() as running:
@@ -246,7 +245,6 @@ def main() -> int:
     parser.add_argument("--directory", type=Path, required=True)
     parser.add_argument("--database", choices=("sqlite", "postgresql"), default="sqlite")
     parser.add_argument("--part", type=float, default=1.0, help="of ten million diagnoses")
-    parser.add_argument("--from-revision", default="head", help="tables that are filled, and then migrated")
     parser.add_argument("--turns", type=int, default=100, help="questions of each client")
     parser.add_argument("--pause", type=float, default=0.5, help="of a client, in the middle [s]")
     parser.add_argument("--processes", type=int, default=1, help="of the site")

@@ -668,16 +668,15 @@ class Note(TypedDict):
     """
     What somebody told of a motor, or what its files tell.
 
-    It happened at `time`; the account `by` told it at `made_time`, perhaps for somebody whom it named. by,
-    withdrawn_by: null where the account was not kept. The condition follows from all but those of kind `note`
-    and those that were withdrawn.
+    It happened at `time`; the account `by` told it at `made_time`, perhaps for somebody whom it named. The
+    condition follows from all but those of kind `note` and those that were withdrawn.
     """
 
     id: str
     motor: str
     kind: EventKind
     text: str
-    by: str | None
+    by: str
     on_behalf_of: str | None
     time: str
     made_time: str
@@ -852,15 +851,14 @@ class PulsationFinding(TypedDict):
 
     load_torque: its amplitude over the rated torque, with load_torque_deviation. noise: what noise makes of
     it, rms. detection_limit: swing that nine of ten such recordings show. What swings once a turn is told by
-    the eccentricity, and at twice the slip by the rotor. Diagnoses of earlier versions have neither deviation
-    nor limit.
+    the eccentricity, and at twice the slip by the rotor.
     """
 
     load_torque: float | None
     noise: float | None
     frequency_hz: float | None
-    load_torque_deviation: NotRequired[float | None]
-    detection_limit: NotRequired[float | None]
+    load_torque_deviation: float | None
+    detection_limit: float | None
     reasons: list[str]
 
 
@@ -2341,10 +2339,11 @@ class TrendPoint(TypedDict):
     """
     One recording's figure; `value` is null where the recording does not tell it.
 
-    ci95: 95 % interval from noise, sensors and parameters, of all but theta_f. Of mu_f only: scatter95, from
-    the record's own scatter alone; detection_limit, the level that nine of ten such recordings show.
-    verdict: of the recording alone; null, and replaced by state, kind and phase, where the figure is one of
-    the motor's condition from that recording on.
+    ci95: 95 % interval from noise, sensors and parameters, where the figure has one. scatter95: of mu_f only,
+    from the record's own scatter alone. detection_limit: what nine of ten such recordings show.
+    verdict: of the recording alone, beside figures of the winding. state: of the stator from that recording
+    on, with kind and phase, beside figures of the motor's condition; what the recording shows of the rotor,
+    beside figures of that. reasons: what limits figures of rotor, air gap, load and supply.
     """
 
     time: str
@@ -2354,9 +2353,10 @@ class TrendPoint(TypedDict):
     detection_limit: float | None
     verdict: Verdict | None
     recording_id: str
-    state: NotRequired[State | None]
+    state: NotRequired[State | RotorState | None]
     kind: NotRequired[Kind | None]
     phase: NotRequired[Literal["a", "b", "c"] | None]
+    reasons: NotRequired[list[str] | None]
 
 
 class Waveform(TypedDict):
@@ -2401,7 +2401,7 @@ class Baseline(TypedDict):
     The motor's healthy recordings; empty where it has no baseline.
 
     When they were chosen, why, where that was said, and which of them were in doubt. by: the account that
-    chose them, null where it was not kept; on_behalf_of: whom it named.
+    chose them; on_behalf_of: whom it named.
     """
 
     recordings: list[Recording]
@@ -2500,7 +2500,6 @@ class Diagnosis(TypedDict):
     a motor with slip rings. hypotheses: the causes that the phasors were weighed for, the likeliest first.
     rotor, supply: what it shows of them. classification: which causes are likely, by all that was examined.
     eccentricity, pulsation: what it shows of the air gap, and of a load that swings.
-    Diagnoses of earlier versions lack some: of those that knew only the scatter, ..._ci95 is null.
     """
 
     verdict: Verdict

@@ -87,15 +87,51 @@ class Operations:
         self,
         motor: str,
         *,
-        quantity: Literal["mu_f", "theta_f", "load_level", "condition_level", "change"] | None = None,
+        quantity: Literal[
+            "mu_f",
+            "theta_f",
+            "load_level",
+            "condition_level",
+            "change",
+            "rotor_severity_dB",
+            "rotor_lower_sideband_dB",
+            "rotor_upper_sideband_dB",
+            "load_oscillation_dB",
+            "slip",
+            "gap_permeance_ripple",
+            "gap_lower_sideband_dB",
+            "gap_upper_sideband_dB",
+            "turn_load_torque",
+            "turn_frequency_hz",
+            "swing_load_torque",
+            "swing_noise",
+            "swing_frequency_hz",
+            "frequency_hz",
+            "voltage_deviation",
+            "voltage_unbalance_iec",
+            "voltage_unbalance_nema",
+            "derating",
+            "thd_voltage",
+            "harmonic_voltage_factor",
+            "current_unbalance",
+            "thd_current",
+            "active_power_W",
+            "power_factor",
+            "stator_resistance_change",
+            "rotor_resistance_change",
+            "magnetising_inductance_change",
+            "leakage_inductance_change",
+        ]
+        | None = None,
         from_: Time | None = None,
         to: Time | None = None,
         limit: int | None = None,
     ) -> Iterator[models.TrendPoint]:
         """Return one figure for each recording of a motor, oldest first.
 
-        The figures of the motor's condition, as it was seen from that recording on, are `condition_level` and
-        `change`; the others are what the recording says by itself. A file has them all, whatever `quantity` is.
+        `condition_level`, `change` and those that end with `_change` are what was said of the motor from that
+        recording on; the others are what the recording says by itself. A file has them all, whatever `quantity`
+        is.
 
         Parameters
         ----------
@@ -122,15 +158,51 @@ class Operations:
         self,
         motor: str,
         *,
-        quantity: Literal["mu_f", "theta_f", "load_level", "condition_level", "change"] | None = None,
+        quantity: Literal[
+            "mu_f",
+            "theta_f",
+            "load_level",
+            "condition_level",
+            "change",
+            "rotor_severity_dB",
+            "rotor_lower_sideband_dB",
+            "rotor_upper_sideband_dB",
+            "load_oscillation_dB",
+            "slip",
+            "gap_permeance_ripple",
+            "gap_lower_sideband_dB",
+            "gap_upper_sideband_dB",
+            "turn_load_torque",
+            "turn_frequency_hz",
+            "swing_load_torque",
+            "swing_noise",
+            "swing_frequency_hz",
+            "frequency_hz",
+            "voltage_deviation",
+            "voltage_unbalance_iec",
+            "voltage_unbalance_nema",
+            "derating",
+            "thd_voltage",
+            "harmonic_voltage_factor",
+            "current_unbalance",
+            "thd_current",
+            "active_power_W",
+            "power_factor",
+            "stator_resistance_change",
+            "rotor_resistance_change",
+            "magnetising_inductance_change",
+            "leakage_inductance_change",
+        ]
+        | None = None,
         from_: Time | None = None,
         to: Time | None = None,
         format: Literal["csv", "xlsx", "parquet"],
     ) -> AbstractContextManager[Download]:
         """Return one figure for each recording of a motor, oldest first.
 
-        The figures of the motor's condition, as it was seen from that recording on, are `condition_level` and
-        `change`; the others are what the recording says by itself. A file has them all, whatever `quantity` is.
+        `condition_level`, `change` and those that end with `_change` are what was said of the motor from that
+        recording on; the others are what the recording says by itself. A file has them all, whatever `quantity`
+        is.
 
         The answer is a file, which is read inside a `with` statement.
 

@@ -30,10 +30,8 @@ def job_runner(
     motors = {motor.name: motor.motor for motor in plant.motors}
     conditions = ConditionWork(
         repository,
-        store,
         motors,
         database_url=settings.database_url,
-        most_observing=max(1, settings.workers - 1),
         alarm_rules=settings.alarms.condition_rules,
         limits=limits_of(settings),
     )

@@ -18,7 +18,7 @@ from service.backup.manifest import TableCopy
 from service.backup.verification import Verified
 from service.storage import connect, migrations
 from service.storage.database_url import readable_url
-from service.storage.partitions import has_partitions, make, partitions, waiting
+from service.storage.partitions import make, partitions, waiting
 
 
 def copy_postgresql(url: str, folder: Path) -> DatabaseCopy:
@@ -111,8 +111,7 @@ class PostgresqlPlace:
         for table in tables:
             self._load_table(connection, backup, table)
         self._switch_triggers(connection, tables, "ENABLE")
-        if has_partitions(connection):
-            make(connection, waiting(connection))
+        make(connection, waiting(connection))
 
     def _switch_triggers(self, connection: Connection, tables: Sequence[str], switch: str) -> None:
         for table in tables:

@@ -90,8 +90,8 @@ def _require_fitting(manifest: Manifest, place: Place) -> None:
     known = [one.revision for one in ScriptDirectory(str(Path(migrations.__file__).parent)).walk_revisions()]
     if manifest.revision not in known:
         raise BackupError(
-            f"{manifest.name}: expected tables of revision {known[0]} or older, found {manifest.revision}: a "
-            f"newer version made it ({manifest.program}); restore it with that version"
+            f"{manifest.name}: expected tables of revision {known[0]}, found {manifest.revision}: another "
+            f"version made it ({manifest.program}); restore it with that version"
         )
 
 

@@ -46,15 +46,9 @@ def document_of(motor: Motor) -> dict[str, Any]:
 
 
 def motor_of(motor: Motor, document: Mapping[str, Any]) -> Motor:
-    """Return a motor with the nameplate and the parameters that it had.
-
-    Documents of earlier versions have no tolerances: all parameters were given.
-    """
-    nameplate, rotor = dict(document["nameplate"]), dict(document.get("wound_rotor", {}))
-    if "rated_speed_rpm" in rotor:  # documents of earlier versions have it there
-        nameplate["rated_speed_rpm"] = rotor.pop("rated_speed_rpm")
-    tolerances = dict(document.get("tolerances", {}))
-    source = ParametersSource(tolerances.pop("source", ParametersSource.GIVEN))
+    """Return a motor with the nameplate and the parameters that it had."""
+    nameplate, tolerances = dict(document["nameplate"]), dict(document["tolerances"])
+    source = ParametersSource(tolerances.pop("source"))
     connection = Connection(nameplate["connection"])
     slots = motor.nameplate.rotor_bars  # no condition depends on them: they are as the file says now
     return replace(
@@ -63,7 +57,7 @@ def motor_of(motor: Motor, document: Mapping[str, Any]) -> Motor:
         parameters=MachineParameters(**document["parameters"]),
         parameters_source=source,
         tolerances=ParameterTolerances(**tolerances),
-        wound_rotor=_wound_rotor(rotor),
+        wound_rotor=_wound_rotor(document.get("wound_rotor")),
         winding=_winding(document.get("winding")),
         deep_bars=DeepBars(**document["deep_bars"]) if "deep_bars" in document else None,
         leakage_saturation=(
@@ -77,9 +71,9 @@ def _winding(table: Mapping[str, Any] | None) -> StatorWinding | None:
     return None if table is None else StatorWinding(**{**table, "kind": WindingKind(table["kind"])})
 
 
-def _wound_rotor(table: Mapping[str, Any]) -> WoundRotor | None:
+def _wound_rotor(table: Mapping[str, Any] | None) -> WoundRotor | None:
     """Return the rotor's winding; None of a cage, of which documents say nothing."""
-    if not table:
+    if table is None:
         return None
     least, most = table["external_resistance_ohm"]
     return WoundRotor(**{**table, "external_resistance_ohm": (least, most)})
@@ -88,15 +82,15 @@ def _wound_rotor(table: Mapping[str, Any]) -> WoundRotor | None:
 def motor_known(name: str, document: Mapping[str, Any]) -> Motor:
     """Return a motor as a document describes it, where the motors file is not at hand.
 
-    Channels and ratios of transformers are not in it. Documents of earlier versions lack some tables.
+    Channels and ratios of transformers are not in it.
     """
     plate = document["nameplate"]
     bare = Motor(
         name,
         Nameplate(**{**plate, "connection": Connection(plate["connection"])}),
         MachineParameters(**document["parameters"]),
-        limits=Limits(**document.get("limits", {})),
-        sensors=SensorClass(**document.get("sensors", {})),
+        limits=Limits(**document["limits"]),
+        sensors=SensorClass(**document["sensors"]),
     )
     return motor_of(bare, document)
 

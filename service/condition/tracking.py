@@ -27,8 +27,7 @@ COLUMNS: Final = {
 class Tracking:
     """The parameters of a motor over a fold: its records, starts and events in their order of time."""
 
-    def __init__(self, follower: Follower | None, starts: Sequence[FollowedStart]) -> None:
-        """follower: None where an earlier version folded; nothing is followed then."""
+    def __init__(self, follower: Follower, starts: Sequence[FollowedStart]) -> None:
         self._follower = follower
         self._starts = list(starts)
         self.points: list[TrackedPoint] = []
@@ -40,46 +39,39 @@ class Tracking:
 
     @classmethod
     def restored(
-        cls, motor: Motor, document: Mapping[str, Any] | None, starts: Sequence[FollowedStart]
+        cls, motor: Motor, document: Mapping[str, Any], starts: Sequence[FollowedStart]
     ) -> "Tracking":
         """Go on from a checkpoint."""
-        return cls(None if document is None else follower_of(motor, document), starts)
+        return cls(follower_of(motor, document), starts)
 
     def follow(self, one: RecordObservation) -> None:
         """Take in a record, and the starts before it."""
-        follower = self._follower
-        if follower is None:
-            return
         self.follow_starts(one.observation.time_ns)
-        if follower.follow(one.observation):
-            self.points.append(_point(one, follower))
+        if self._follower.follow(one.observation):
+            self.points.append(_point(one, self._follower))
 
     def follow_starts(self, until_ns: int | None = None) -> None:
         """Take in the starts up to a time, or all."""
         while self._starts and (until_ns is None or self._starts[0].time_ns <= until_ns):
             start = self._starts.pop(0)
-            if self._follower is not None:
-                self._follower.follow_start(start.time_ns, start.rotor_over_stator, start.deviation)
+            self._follower.follow_start(start.time_ns, start.rotor_over_stator, start.deviation)
 
     def apply(self, event: Event, edited: Motor | None) -> None:
         """Take in an event. edited: the motor as the file has it from then on, where that was edited."""
-        follower = self._follower
-        if follower is None:
-            return
         if event.kind in ANEW:
-            self._follower = Follower(follower.motor)
+            self._follower = Follower(self._follower.motor)
         elif event.kind is EventKind.PARAMETERS_EDITED and edited is not None:
             self._follower = Follower(edited)
         elif event.kind is EventKind.RECORDER_CHANGED:
-            follower.meet_other_sensors()
+            self._follower.meet_other_sensors()
 
-    def document(self) -> Mapping[str, object] | None:
+    def document(self) -> Mapping[str, object]:
         """Return what a checkpoint keeps."""
-        return None if self._follower is None else document_of(self._follower)
+        return document_of(self._follower)
 
-    def found(self) -> Mapping[str, object] | None:
+    def found(self) -> Mapping[str, object]:
         """Return what is said of the parameters now."""
-        return None if self._follower is None else tracked_parameters(self._follower).as_dict()
+        return tracked_parameters(self._follower).as_dict()
 
 
 def _point(one: RecordObservation, follower: Follower) -> TrackedPoint:

@@ -2,9 +2,9 @@
 
 import time
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from concurrent.futures import BrokenExecutor, Future
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from importlib.metadata import version
 from random import choice
 
@@ -17,9 +17,7 @@ from core.machines.parameters import Motor
 from core.units import NANOSECONDS_PER_DAY
 from service.alarms.condition_rules import AT_ONCE, ConditionRules
 from service.condition.errors import RecordFoldError
-from service.condition.worker import FoldTask, ObserveTask, fold_motor, observe_recordings
-from service.recording_store.errors import StoreError
-from service.recording_store.store import RecordingStore
+from service.condition.worker import FoldTask
 from service.storage.repository import Repository
 from service.storage.transaction_limits import USUAL, TransactionLimits
 from service.timing.backoff import Backoff
@@ -27,20 +25,14 @@ from service.timing.database_silence import does_not_answer
 
 log: FilteringBoundLogger = structlog.get_logger(__name__)
 
-RECORDINGS_A_TASK = 20
-"""Recordings that one task observes at most, oldest first."""
-
 FAILURES = Backoff(first_s=1.0, longest_s=300.0)
 """Before a motor whose task has failed is tried again."""
 
 MOST_FAILURES = 3
-"""After so many in a row, the recording that cannot be observed or folded is left out.
+"""After so many in a row, the recording that cannot be folded is left out.
 
 A motor whose fold fails otherwise, or brings its worker down, is set aside until something changes again.
 """
-
-HELD_S = 600.0
-"""Time between two folds of a motor while recordings of its bus are yet to be observed."""
 
 LEFT_OUT = "left out of the condition: {}; it is tried again with another diagnosis, and by another version"
 
@@ -53,20 +45,16 @@ IN_TURN_NS = NANOSECONDS_PER_DAY
 MOST_CHARACTERS = 300
 """Of what is told of a failure."""
 
-REPORT_S = 60.0
-"""Time between two lines of the log on how many recordings are yet to be observed."""
-
 
 @dataclass(frozen=True, slots=True)
 class ConditionTask:
-    """A task for a worker: call `function` with `argument`.
+    """A task for a worker: to fold a motor (service.condition.worker.fold_motor).
 
     marks: of the changes that are folded, where the motor's fold has failed before.
     """
 
     motor: str
-    function: Callable[..., int]
-    argument: FoldTask | ObserveTask
+    fold: FoldTask
     marks: tuple[str, ...] = ()
 
 
@@ -78,14 +66,8 @@ class _Trouble:
     until_s: float = 0.0
 
 
-@dataclass(slots=True)
-class _Progress:
-    reported_s: float = field(default_factory=time.monotonic)
-    observed: int = 0
-
-
 class ConditionWork:
-    """Says which motor is folded next, or which recordings are observed. For use by one thread.
+    """Says which motor is folded next. For use by one thread.
 
     One task a motor at a time. A motor whose task fails is tried again after a pause, and set aside after a
     few failures; meanwhile its condition ages. Several services may share a database: what two of them do
@@ -95,34 +77,23 @@ class ConditionWork:
     def __init__(
         self,
         repository: Repository,
-        store: RecordingStore,
         motors: Mapping[str, Motor],
         *,
         database_url: str,
-        most_observing: int = 1,
         alarm_rules: ConditionRules = AT_ONCE,
         limits: TransactionLimits = USUAL,
     ) -> None:
-        """most_observing: so many tasks may observe at a time; the other workers are free for what is new.
-
-        alarm_rules: when a motor's condition makes an alarm. limits: of the workers' transactions.
-        """
+        """alarm_rules: when a motor's condition makes an alarm. limits: of the workers' transactions."""
         self._alarm_rules = alarm_rules
         self._repository = repository
         self._motors = motors
         self._database_url = database_url
         self._limits = limits
-        self._store = store
-        self._most_observing = most_observing
         self._under_way: dict[str, ConditionTask] = {}
         self._trouble: dict[str, _Trouble] = {}
         # Services that share a database begin with different motors, and seldom fold the same one.
         self._latest = choice(sorted(motors)) if motors else ""  # noqa: S311 - nothing to keep secret
-        self._all_observed = False
         self._to_judge_again: deque[str] = deque()
-        self._begun_s = time.monotonic()
-        self._folded_s: dict[str, float] = {}
-        self._progress = _Progress()
 
     def begin(self) -> None:
         """Have tried again what was set aside or left out, and see what other rules have judged.
@@ -140,7 +111,7 @@ class ConditionWork:
 
         Raises SQLAlchemyError.
         """
-        task = self._next_fold() or self._next_observation() or self._next_judged_again()
+        task = self._next_fold() or self._next_judged_again()
         if task is not None:
             self._under_way[task.motor] = task
         return task
@@ -157,8 +128,6 @@ class ConditionWork:
             self._failed(task, error)
             return
         self._trouble.pop(task.motor, None)
-        if isinstance(task.argument, ObserveTask):
-            self._report(future.result())
 
     @property
     def tasks_under_way(self) -> int:
@@ -176,24 +145,18 @@ class ConditionWork:
         """
         marks_ns = self._repository.earliest_marks()
         due = [motor for motor in marks_ns if self._is_free(motor)]
-        if due and not self._all_observed:
-            # Each recording that is yet to be observed would have them folded again.
-            awaiting = self._repository.motors_awaiting_observations()
-            now_s = time.monotonic()
-            due = [one for one in due if one not in awaiting or now_s >= self._held_until_s(one)]
         if not due:
             return None
         latest_ns = max(marks_ns[motor] for motor in due)
         due = [motor for motor in due if marks_ns[motor] >= latest_ns - IN_TURN_NS]
         motor = next((one for one in due if one > self._latest), due[0])
         self._latest = motor
-        self._folded_s[motor] = time.monotonic()
         # They may be many, and are of use only where the motor is about to be set aside.
         marks = self._repository.fold_marks(motor) if motor in self._trouble else ()
         task = FoldTask(
             self._database_url, self._motors[motor], alarm_rules=self._alarm_rules, limits=self._limits
         )
-        return ConditionTask(motor, fold_motor, task, marks)
+        return ConditionTask(motor, task, marks)
 
     def _next_judged_again(self) -> ConditionTask | None:
         """Begin with another motor that other rules have judged, where none waits to be folded.
@@ -212,29 +175,6 @@ class ConditionWork:
                 return self._next_fold()
         return None
 
-    def _held_until_s(self, motor: str) -> float:
-        return self._folded_s.get(motor, self._begun_s) + HELD_S
-
-    def _next_observation(self) -> ConditionTask | None:
-        if self._all_observed:
-            return None
-        observing = sum(isinstance(one.argument, ObserveTask) for one in self._under_way.values())
-        if observing >= self._most_observing:
-            return None
-        left = self._repository.motors_to_observe()
-        self._all_observed = not left
-        for motor in left:
-            if not self._is_free(motor):
-                continue
-            failures = self._trouble[motor].failures if motor in self._trouble else 0
-            recordings = self._repository.recordings_to_observe(motor, 1 if failures else RECORDINGS_A_TASK)
-            if recordings:
-                argument = ObserveTask(
-                    self._database_url, self._store, self._motors[motor], recordings, self._limits
-                )
-                return ConditionTask(motor, observe_recordings, argument)
-        return None
-
     def _is_free(self, motor: str) -> bool:
         trouble = self._trouble.get(motor)
         is_pausing = trouble is not None and time.monotonic() < trouble.until_s
@@ -245,35 +185,17 @@ class ConditionWork:
         trouble.failures += 1
         trouble.until_s = time.monotonic() + FAILURES.pause_s(trouble.failures)
         log.error("work on a condition failed, trying again", motor=task.motor, exc_info=error)
-        if isinstance(error, StoreError):  # the place of all recordings: none of them is at fault
+        if trouble.failures < MOST_FAILURES:
             return
-        if isinstance(task.argument, ObserveTask) and trouble.failures >= MOST_FAILURES:
-            (recording, *_) = task.argument.recordings
-            log.error("recording is left out of the condition", recording=recording.recording_id)
-            self._repository.add_observations([(recording.recording_id, None)])
-            del self._trouble[task.motor]
-        elif isinstance(error, RecordFoldError) and trouble.failures >= MOST_FAILURES:
+        if isinstance(error, RecordFoldError):
             log.error("record left out of the condition", recording=error.recording_id, reason=error.reason)
             self._repository.leave_out(error.recording_id, LEFT_OUT.format(error.reason), PROGRAM)
             del self._trouble[task.motor]
-        elif (
-            isinstance(task.argument, FoldTask)
-            and trouble.failures >= MOST_FAILURES
-            and not does_not_answer(error)
-        ):
+        elif not does_not_answer(error):
             problem = f"folding failed {trouble.failures} times, the last time: {_words(error)}"
             log.error("motor set aside: its condition follows no records", motor=task.motor, reason=problem)
             self._repository.set_fold_aside(task.motor, task.marks, problem)
             del self._trouble[task.motor]
-
-    def _report(self, observed: int) -> None:
-        """Log now and then how far observing has come."""
-        self._progress.observed += observed
-        if time.monotonic() < self._progress.reported_s + REPORT_S:
-            return
-        left = self._repository.backlog().unobserved_recordings
-        log.info("stored recordings observed", number=self._progress.observed, left=left)
-        self._progress = _Progress()
 
 
 def _words(error: BaseException) -> str:

@@ -18,6 +18,7 @@ from structlog.typing import FilteringBoundLogger
 
 from core.machines.parameters import Motor
 from service.condition.work import ConditionTask, ConditionWork
+from service.condition.worker import fold_motor
 from service.jobs.answers import Answers
 from service.jobs.keeping import keep_diagnosed
 from service.jobs.limits import JobLimits
@@ -163,7 +164,7 @@ class JobRunner:
         if self._conditions is None or (task := self._conditions.next_task()) is None:
             return False
         try:
-            future = self._pool.schedule(task.function, task.argument, CONDITION_TIMEOUT_S)
+            future = self._pool.schedule(fold_motor, task.fold, CONDITION_TIMEOUT_S)
         except NoWorkersError:
             self._conditions.give_back()
             return False

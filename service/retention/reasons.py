@@ -8,7 +8,6 @@ from service.storage.states import StayReason
 WORDS: Mapping[StayReason, str] = MappingProxyType(
     {
         StayReason.RUNNING: "a diagnosis of it is running",
-        StayReason.UNOBSERVED: "its motor's condition does not know it yet",
         StayReason.BASELINE: "it is part of the motor's baseline",
         StayReason.ALARM: "an alarm of the motor rests on it that is not over",
         StayReason.NOTE: "it is next to what somebody told of the motor",

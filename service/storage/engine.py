@@ -87,8 +87,7 @@ def busy_timeout_s_of(options: Mapping[str, object]) -> float:
 def _decoded(text: str | bytes) -> object:
     """Return what a JSON document says, in half the time of `json.loads`.
 
-    Half of a surrogate pair is no Unicode, which `from_json` insists on. Texts of relays may have brought one
-    into a database of an earlier version.
+    Half of a surrogate pair is no Unicode, which `from_json` insists on.
     """
     try:
         found: object = from_json(text)

@@ -1,12 +1,10 @@
 """Partitions of the measured values on PostgreSQL: a table for each step and period of time.
 
-    measurements                          by time
-        measurements_before               what was there before there were partitions; not in new databases
-        measurements_since                by step and time
-            measurements_default          what has no partition (yet): no insert fails
-            measurements_0_2026_11_25     samples of a day
-            measurements_60_2026_11       means of a minute, of a month
-            measurements_900_2026_11      means of a quarter of an hour, of a month
+    measurements                      by step and time
+        measurements_default          what has no partition (yet): no insert fails
+        measurements_0_2026_11_25     samples of a day
+        measurements_60_2026_11       means of a minute, of a month
+        measurements_900_2026_11      means of a quarter of an hour, of a month
 
 Samples are kept for a day and means for years: in tables by time alone, the room of a month's samples would
 stay with its few means for years. SQLite has one table, and nothing here is for it.
@@ -23,8 +21,6 @@ from core.units import NANOSECONDS_PER_DAY, NANOSECONDS_PER_SECOND
 from service.plant import AveragingStep
 
 TABLE = "measurements"
-BEFORE = "measurements_before"
-SINCE = "measurements_since"
 DEFAULT = "measurements_default"
 
 AHEAD_NS = 3 * NANOSECONDS_PER_DAY
@@ -72,11 +68,6 @@ class Period:
             return None
         year, month, day = (*map(int, found["begin"].split("_")), 1)[:3]
         return cls.at(int(found["step"]), _ns(datetime(year, month, day, tzinfo=UTC)))
-
-
-def has_partitions(connection: Connection) -> bool:
-    """Return whether the measured values have partitions: on PostgreSQL, with the tables of this version."""
-    return connection.dialect.name == "postgresql" and _exists(connection, SINCE)
 
 
 def partitions(connection: Connection) -> Sequence[str]:
@@ -149,7 +140,7 @@ def make(connection: Connection, new: Iterable[Period]) -> Sequence[Period]:
     for period in missing:
         connection.execute(
             text(
-                f"ALTER TABLE {SINCE} ATTACH PARTITION {period.name} FOR VALUES FROM"
+                f"ALTER TABLE {TABLE} ATTACH PARTITION {period.name} FOR VALUES FROM"
                 f" ({period.step_s}, {period.begin_ns}) TO ({period.step_s}, {period.end_ns})"
             )
         )
@@ -168,32 +159,6 @@ def drop(connection: Connection, step_s: int, *, before_ns: int) -> Sequence[Per
     return past
 
 
-def drop_empty_before(connection: Connection) -> bool:
-    """Drop the table of the time before there were partitions when nothing is in it; return whether it was.
-
-    What comes with older times than those of the partitions belongs to the default one then.
-    """
-    if not _exists(connection, BEFORE) or not _is_empty(connection, BEFORE):
-        return False
-    _limit_wait(connection)
-    connection.execute(text(f"LOCK TABLE {BEFORE} IN SHARE ROW EXCLUSIVE MODE"))
-    if not _is_empty(connection, BEFORE):
-        return False
-    connection.execute(text(f"DROP TABLE {BEFORE}"))
-    connection.execute(text(f"ALTER TABLE {TABLE} DETACH PARTITION {SINCE}"))
-    connection.execute(
-        text(f"ALTER TABLE {TABLE} ATTACH PARTITION {SINCE} FOR VALUES FROM (MINVALUE) TO (MAXVALUE)")
-    )
-    return True
-
-
-def row_wise(connection: Connection) -> Sequence[str]:
-    """Return the tables whose old rows are deleted one by one: those that are not of one period."""
-    if not has_partitions(connection):
-        return (TABLE,)
-    return tuple(name for name in (BEFORE, DEFAULT) if _exists(connection, name))
-
-
 def _fewest(present: set[Period], missing: set[Period]) -> Sequence[Period]:
     """Return as many of the missing ones as each step may still have, the latest first."""
     taken: list[Period] = []
@@ -202,15 +167,6 @@ def _fewest(present: set[Period], missing: set[Period]) -> Sequence[Period]:
         of_step = sorted((one for one in missing if one.step_s == step), reverse=True)
         taken += of_step[: max(0, room)]
     return taken
-
-
-def _exists(connection: Connection, table: str) -> bool:
-    return connection.scalar(text("SELECT to_regclass(:name)"), {"name": table}) is not None
-
-
-def _is_empty(connection: Connection, table: str) -> bool:
-    first = f"SELECT step_s FROM {table} ORDER BY step_s, time_ns LIMIT 1"  # noqa: S608 - own names
-    return connection.scalar(text(first)) is None
 
 
 def _limit_wait(connection: Connection) -> None:

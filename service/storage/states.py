@@ -142,7 +142,6 @@ class StayReason(StrEnum):
     """Why no rule of retention deletes a recording; the first that holds is told."""
 
     RUNNING = "running-diagnosis"
-    UNOBSERVED = "not-observed-yet"
     BASELINE = "baseline"
     ALARM = "open-alarm"
     NOTE = "note"

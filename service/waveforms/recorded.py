@@ -83,9 +83,7 @@ class Recorded:
             raise NoReplayError("the recording was refused: no current was modelled")
         fit = document.get("fit")
         if not isinstance(fit, Mapping):
-            raise NoReplayError(
-                "the diagnosis was made by an earlier version, which kept no parameters: diagnose again"
-            )
+            raise NoReplayError("the diagnosis kept no parameters of its fit")
         reasons = document.get("reasons")
         relative = isinstance(reasons, list) and is_relative(str(reason) for reason in reasons)
         healthy = self.repository.baseline(entry.motor).recordings if relative else ()

@@ -160,7 +160,7 @@ def fold(
     change = ConditionChange(
         motor=condition.motor, time_ns=now_ns, recording_id=None, event_id=event_id, **figures
     )
-    folded = Checkpoint(max([now_ns, *(point.time_ns for point in points)]), len(points), b"")
+    folded = Checkpoint(max([now_ns, *(point.time_ns for point in points)]), len(points), b"", {})
     result = FoldResult(points, [change], [folded], tuple(begun.earlier), entry)
     if parameters is not None:
         result = replace(result, parameters=parameters.as_dict())

@@ -2,7 +2,7 @@
 
 Builds and starts every container, triggers every motor over REST from outside, cuts a factory off while one
 of its relays records (for 20 s, and for so long that records are lost), restarts what a person might, tries
-what may be wrong on a host, backs up, restores, brings an older database up to date, takes all down.
+what may be wrong on a host, backs up, restores, shows it a database of another version, takes all down.
 """
 
 import shlex
@@ -55,15 +55,13 @@ except OSError as error:
     print("out of reach:", error)
 """
 
-OLDER_DATABASE = """
-from alembic import command
-from service.configuration.settings import Settings
-from service.storage import connect
-from service.storage.migrations import config
-with connect(Settings.load(None).database_url).begin() as connection:
-    command.downgrade(config(connection), "0001")
+OTHER_TABLES = """
+import sqlite3, sys
+database = sqlite3.connect("/data/statorwatch.sqlite")
+database.execute("UPDATE alembic_version SET version_num = ?", sys.argv[1:])
+database.commit()
 """
-"""What a volume holds that the first version wrote."""
+"""Has the volume say that another version made its tables."""
 
 REVISION = """
 import sqlite3
@@ -249,17 +247,19 @@ def the_documented_backup_restores(enterprise: Enterprise) -> None:
         assert enterprise.trend(motor)[: len(old)] == old
 
 
-def an_older_database_is_brought_up_to_date(enterprise: Enterprise) -> None:
+def a_database_of_another_version_is_refused(enterprise: Enterprise) -> None:
     before, points = enterprise.recordings(), {motor: enterprise.trend(motor) for motor in MOTOR_NAMES}
-    newest = _revision(enterprise.compose.inside("mcc", "python", "-c", REVISION))
+    ours = _revision(enterprise.compose.inside("mcc", "python", "-c", REVISION))
     enterprise.compose("stop", "mcc")
-    enterprise.compose.once("mcc", "python", "-c", OLDER_DATABASE)
-    assert _revision(enterprise.compose.once("mcc", "python", "-c", REVISION)) == "0001" < newest
+    enterprise.compose.once("mcc", "python", "-c", OTHER_TABLES, "0058")
+    refused = enterprise.compose.attempt("run", "--rm", "-T", "--no-deps", "mcc", "mcc", "serve")
+    assert refused.returncode != 0
+    assert f"expected tables of revision {ours}, found 0058: another version made them" in refused.stdout
+    assert _revision(enterprise.compose.once("mcc", "python", "-c", REVISION)) == "0058"
+    enterprise.compose.once("mcc", "python", "-c", OTHER_TABLES, ours)
     enterprise.compose("start", "mcc")
     enterprise.wait("the service is ready", lambda: enterprise.service.is_ready(), START_LIMIT_S)
-    enterprise.log_in()  # the first version knew no users
     enterprise.wait_for_links()
-    assert _revision(enterprise.compose.inside("mcc", "python", "-c", REVISION)) == newest
     enterprise.require_continuation(before)
     for motor, old in points.items():
         assert enterprise.trend(motor)[: len(old)] == old
@@ -313,7 +313,7 @@ STEPS = (
     a_volume_that_cannot_be_written_to_is_named,
     restarts_lose_nothing,
     the_documented_backup_restores,
-    an_older_database_is_brought_up_to_date,
+    a_database_of_another_version_is_refused,
     stopped_and_started_again_it_goes_on,
     everything_is_taken_down,
 )

@@ -6,6 +6,7 @@ from tests.docs import (
     architecture_drawing,
     audit_actions,
     command_reference,
+    quantities,
     role_tables,
 )
 
@@ -15,3 +16,4 @@ alarm_transitions.main()
 alarm_kinds.main()
 audit_actions.main()
 role_tables.main()
+quantities.main()

@@ -156,8 +156,7 @@ class Condition:
         Parameters
         ----------
         document : mapping
-            What `as_dict` returned; further keys are left out. Those of earlier versions have no
-            `size_ci95` and no `accepted_level`.
+            What `as_dict` returned; further keys are left out.
 
         Returns
         -------
@@ -177,14 +176,14 @@ class Condition:
             kind=Kind(document["kind"]),
             candidates=tuple(Kind(kind) for kind in document["candidates"]),
             phase=document["phase"],
-            phase_probabilities=phases_of_document(document.get("phase_probabilities")),
-            axis_deg=document.get("axis_deg"),
+            phase_probabilities=phases_of_document(document["phase_probabilities"]),
+            axis_deg=document["axis_deg"],
             mu_f=document["mu_f"],
             mu_f_ci95=interval_of(document["mu_f_ci95"]),
             change=document["change"],
             change_ci95=interval_of(document["change_ci95"]),
             size=document["size"],
-            size_ci95=interval_of(document.get("size_ci95")),
+            size_ci95=interval_of(document["size_ci95"]),
             since_ns=time_ns_of(document["since"]),
             forecast=Forecast(
                 limit=forecast["limit"],

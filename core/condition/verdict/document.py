@@ -69,7 +69,7 @@ def reference_of(document: Mapping[str, Any]) -> Reference | None:
     """Return the reference that a document tells; None before there was one."""
     if document["standing"] is None:
         return None
-    phases = phases_of_document(document.get("standing_phase_probabilities"))
+    phases = phases_of_document(document["standing_phase_probabilities"])
     return Reference(
         records=document["records"],
         complete=document["complete"],
@@ -81,7 +81,7 @@ def reference_of(document: Mapping[str, Any]) -> Reference | None:
             winding=_likeliest(phases),
             interval=interval_of(document["standing_ci95"]),
             phases=phases,
-            axis_deg=document.get("standing_axis_deg"),
+            axis_deg=document["standing_axis_deg"],
         ),
         standing_score=document["standing_score"],
         from_bus=document["from_bus"],
@@ -112,7 +112,7 @@ def phases_of_document(figures: list[float] | None) -> Phases | None:
 
 
 def _declared(document: Mapping[str, Any]) -> Declared | None:
-    interval = interval_of(document.get("accepted_level_ci95"))
+    interval = interval_of(document["accepted_level_ci95"])
     if interval is None:
         return None
     return Declared(document["accepted_level"], interval, document["accepted_phase"])

@@ -182,16 +182,15 @@ class Withdrawal(RequestForSomebody):
 class Note(Document):
     """What somebody told of a motor, or what its files tell.
 
-    It happened at `time`; the account `by` told it at `made_time`, perhaps for somebody whom it named. by,
-    withdrawn_by: null where the account was not kept. The condition follows from all but those of kind `note`
-    and those that were withdrawn.
+    It happened at `time`; the account `by` told it at `made_time`, perhaps for somebody whom it named. The
+    condition follows from all but those of kind `note` and those that were withdrawn.
     """
 
     id: str
     motor: str
     kind: EventKind
     text: str = Field(validation_alias="reason")
-    by: str | None = Field(validation_alias="account")
+    by: str = Field(validation_alias="account")
     on_behalf_of: str | None
     time: Time = Field(validation_alias="time_ns")
     made_time: Time = Field(validation_alias="made_ns")

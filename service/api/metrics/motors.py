@@ -119,11 +119,6 @@ class MotorMetrics(Collector):
     def _backlog(self) -> Iterator[Metric]:
         backlog = self._repository.backlog()
         yield GaugeMetricFamily(
-            "mcc_recordings_to_observe",
-            "Recordings from before there were conditions that are yet to be taken into account",
-            value=backlog.unobserved_recordings,
-        )
-        yield GaugeMetricFamily(
             "mcc_motors_to_fold",
             "Motors whose condition is about to follow a change",
             value=backlog.motors_to_fold,

@@ -2,13 +2,14 @@
 
 import time
 from functools import partial
-from typing import Annotated, Literal
+from typing import Annotated
 
 from fastapi import APIRouter, Query, Response
 from fastapi.responses import StreamingResponse
 
 from core.machines.parameters import ParametersSource
 from core.operation import Operation
+from core.quantities import TrendedName
 from service.access.permissions import Permission
 from service.api.access.requirements import require
 from service.api.conditions.documents import condition_document
@@ -26,7 +27,7 @@ from service.api.motors.schemas import (
     TrendPoint,
     Winding,
 )
-from service.api.motors.trend_page import ConditionQuantity, trend_of_conditions, trend_of_recordings
+from service.api.motors.trend_page import trend_page
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
 from service.api.recordings.listed import listed
@@ -35,7 +36,7 @@ from service.api.times import From, To, rfc3339
 from service.condition.staleness import stale_after_ns
 from service.configuration.settings import Settings
 from service.exports import recordings, trends
-from service.storage.records import MotorHealth, Quantity
+from service.storage.records import MotorHealth
 
 router = APIRouter()
 
@@ -100,7 +101,7 @@ def get_trend(
     context: Context,
     name: Name,
     file: ListAnswer,
-    quantity: Literal[Quantity, ConditionQuantity] = "mu_f",
+    quantity: TrendedName = "mu_f",
     from_: From = None,
     to: To = None,
     limit: Limit = DEFAULT_LIMIT,
@@ -108,19 +109,17 @@ def get_trend(
 ) -> Response:
     """Return one figure for each recording of a motor, oldest first.
 
-    The figures of the motor's condition, as it was seen from that recording on, are `condition_level` and
-    `change`; the others are what the recording says by itself. A file has them all, whatever `quantity` is.
+    `condition_level`, `change` and those that end with `_change` are what was said of the motor from that
+    recording on; the others are what the recording says by itself. A file has them all, whatever `quantity`
+    is.
     """
     if file is not None:
         context.require_motor(name)
         rows = trends.trends(context.repository, [name], from_ns=from_, to_ns=to)
         return file.of(trends.TABLE, rows, [name])
     after = decode(cursor, int, str)
-    if quantity == "condition_level" or quantity == "change":
-        seen = context.repository.condition_trend(name, from_ns=from_, to_ns=to, limit=limit, after=after)
-        return trend_of_conditions(seen, quantity)
     points = context.repository.trend(name, quantity, from_ns=from_, to_ns=to, limit=limit, after=after)
-    return trend_of_recordings(points)
+    return trend_page(points, quantity)
 
 
 @router.get(

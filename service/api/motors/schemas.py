@@ -9,6 +9,7 @@ from core.condition.kinds import Kind, State
 from core.diagnosis.verdict import Verdict
 from core.machines.parameters import ParametersSource
 from core.machines.stator_winding import WindingKind
+from core.rotor.finding import RotorState
 from service.api.conditions.schemas import Condition
 from service.api.document import Document, Listed, Reason, RequestForSomebody
 from service.api.recordings.schemas import Recording
@@ -109,22 +110,24 @@ class ListedMotor(PlantMotor):
 class TrendPoint(Document):
     """One recording's figure; `value` is null where the recording does not tell it.
 
-    ci95: 95 % interval from noise, sensors and parameters, of all but theta_f. Of mu_f only: scatter95, from
-    the record's own scatter alone; detection_limit, the level that nine of ten such recordings show.
-    verdict: of the recording alone; null, and replaced by state, kind and phase, where the figure is one of
-    the motor's condition from that recording on.
+    ci95: 95 % interval from noise, sensors and parameters, where the figure has one. scatter95: of mu_f only,
+    from the record's own scatter alone. detection_limit: what nine of ten such recordings show.
+    verdict: of the recording alone, beside figures of the winding. state: of the stator from that recording
+    on, with kind and phase, beside figures of the motor's condition; what the recording shows of the rotor,
+    beside figures of that. reasons: what limits figures of rotor, air gap, load and supply.
     """
 
-    time: Time = Field(validation_alias="recorded_ns")
+    time: Time = Field(validation_alias="time_ns")
     value: float | None
     ci95: tuple[float, float] | None
     scatter95: tuple[float, float] | None
     detection_limit: float | None
     verdict: Verdict | None
     recording_id: str
-    state: State | None = None
+    state: State | RotorState | None = None
     kind: Kind | None = None
     phase: Literal["a", "b", "c"] | None = None
+    reasons: tuple[str, ...] | None = None
 
 
 class BaselineRequest(RequestForSomebody):
@@ -148,7 +151,7 @@ class Baseline(Document):
     """The motor's healthy recordings; empty where it has no baseline.
 
     When they were chosen, why, where that was said, and which of them were in doubt. by: the account that
-    chose them, null where it was not kept; on_behalf_of: whom it named.
+    chose them; on_behalf_of: whom it named.
     """
 
     recordings: Listed[Recording]

@@ -107,7 +107,6 @@ class Diagnosis(Document):
     a motor with slip rings. hypotheses: the causes that the phasors were weighed for, the likeliest first.
     rotor, supply: what it shows of them. classification: which causes are likely, by all that was examined.
     eccentricity, pulsation: what it shows of the air gap, and of a load that swings.
-    Diagnoses of earlier versions lack some: of those that knew only the scatter, ..._ci95 is null.
     """
 
     verdict: Verdict

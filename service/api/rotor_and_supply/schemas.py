@@ -66,15 +66,14 @@ class PulsationFinding(Document):
 
     load_torque: its amplitude over the rated torque, with load_torque_deviation. noise: what noise makes of
     it, rms. detection_limit: swing that nine of ten such recordings show. What swings once a turn is told by
-    the eccentricity, and at twice the slip by the rotor. Diagnoses of earlier versions have neither deviation
-    nor limit.
+    the eccentricity, and at twice the slip by the rotor.
     """
 
     load_torque: float | None
     noise: float | None
     frequency_hz: float | None
-    load_torque_deviation: float | None = None
-    detection_limit: float | None = None
+    load_torque_deviation: float | None
+    detection_limit: float | None
     reasons: Listed[str]
 
 

@@ -7,6 +7,7 @@ import typer
 
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL, Method, Model
 from core.operation import Operation
+from core.quantities import TrendedName
 from service.cli.commands.options import (
     DEFAULT_URL,
     Config,
@@ -32,16 +33,6 @@ Reason = Annotated[str | None, typer.Option(metavar="TEXT", help="Why; it is kep
 OnBehalfOf = Annotated[
     str | None, typer.Option(metavar="NAME", help="Whom you do it for; shown beside your account.")
 ]
-Quantity = Literal[
-    "mu_f", "theta_f", "load_level", "condition_level", "change",
-    "rotor_severity_dB",
-    "gap_permeance_ripple", "turn_load_torque", "swing_load_torque", "swing_frequency_hz",
-    "frequency_hz", "voltage_deviation", "voltage_unbalance_iec", "voltage_unbalance_nema", "derating",
-    "thd_voltage", "harmonic_voltage_factor", "current_unbalance", "thd_current", "active_power_W",
-    "power_factor",
-    "stator_resistance_change", "rotor_resistance_change", "magnetising_inductance_change",
-    "leakage_inductance_change",
-]  # fmt: skip
 DateOrder = Literal["MDY", "YMD", "DMY"]
 PowerUnit = Literal["W", "kW"]
 State = Literal["announced", "fetched", "diagnosed", "rejected", "failed"]
@@ -52,12 +43,10 @@ def trend(
     motor: MotorName,
     url: Url = DEFAULT_URL,
     quantity: Annotated[
-        Quantity,
+        TrendedName,
         typer.Option(
-            help="mu_f, theta_f, load_level, rotor_severity_dB, those of air gap and load "
-            "(gap_permeance_ripple to swing_frequency_hz) and of the supply (frequency_hz to power_factor) "
-            "are what each recording says by itself; condition_level, change and those that end with "
-            "_change what is said of the motor from it on."
+            help="condition_level, change and those that end with _change are what is said of the motor "
+            "from a recording on; the others what each recording says by itself."
         ),
     ] = "mu_f",
     from_: From = None,

@@ -37,9 +37,9 @@ from service.gateways.opcua.values import (
     text_value,
 )
 from service.gateways.plant_state.figures import MotorFigures, PlantChange, PlantState, RelayFigures
-from service.storage.records import Alarm, Quantity
+from service.storage.records import Alarm
 
-HistoryNodes = dict[ua.NodeId, tuple[str, Quantity]]
+HistoryNodes = dict[ua.NodeId, tuple[str, str]]
 
 
 class PlantNodes:

@@ -1,15 +1,11 @@
 """What the variables of a motor that have a history told in the past."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
-from typing import Generic, NamedTuple, Protocol, TypeVar
+from typing import NamedTuple, Protocol
 
 from core.diagnosis.verdict import Verdict
 from service.storage import Repository
-from service.storage.records import ConditionPoint, Page, Quantity, TrendPoint
-
-Point = TypeVar("Point")
+from service.storage.records.history import TrendPoint
 
 
 class PastValue(NamedTuple):
@@ -28,35 +24,19 @@ class FigureTrend(Protocol):
     ) -> tuple[PastValue, ...]: ...
 
 
-def trend_of(repository: Repository, motor: str, quantity: Quantity) -> FigureTrend:
-    """Return what asks for a figure's values.
+def trend_of(repository: Repository, motor: str, quantity: str) -> FigureTrend:
+    """Return what asks for a figure's values; quantity: its name (core.quantities)."""
+    ask = partial(repository.trend, motor, quantity)
 
-    The level is that of the motor's condition, as its variable tells it: a record alone may show another.
-    The load is each record's own.
-    """
-    if quantity == "mu_f":
-        return _Values(partial(repository.condition_trend, motor), _level)
-    return _Values(partial(repository.trend, motor, quantity), _of_record)
-
-
-@dataclass(frozen=True, slots=True)
-class _Values(Generic[Point]):
-    """Asks the database for a page of points, and makes values of them."""
-
-    ask: Callable[..., Page[Point]]
-    to_value: Callable[[Point], PastValue]
-
-    def __call__(
-        self, *, limit: int, from_ns: int | None = None, to_ns: int | None = None, descending: bool = False
+    def values(
+        *, limit: int, from_ns: int | None = None, to_ns: int | None = None, descending: bool = False
     ) -> tuple[PastValue, ...]:
-        page = self.ask(limit=limit, from_ns=from_ns, to_ns=to_ns, descending=descending)
-        return tuple(map(self.to_value, page.items))
+        page = ask(limit=limit, from_ns=from_ns, to_ns=to_ns, descending=descending)
+        return tuple(map(_past_value, page.items))
+
+    return values
 
 
-def _level(point: ConditionPoint) -> PastValue:
-    return PastValue(point.time_ns, point.mu_f, point.mu_f is not None)
-
-
-def _of_record(point: TrendPoint) -> PastValue:
+def _past_value(point: TrendPoint) -> PastValue:
     is_good = point.value is not None and point.verdict != Verdict.UNDIAGNOSABLE
-    return PastValue(point.recorded_ns, point.value, is_good)
+    return PastValue(point.time_ns, point.value, is_good)

@@ -17,7 +17,6 @@ from sqlalchemy.exc import SQLAlchemyError
 from service.gateways.opcua.figure_trends import FigureTrend, PastValue, trend_of
 from service.gateways.opcua.worker_threads import LONGEST_S, TURN_S, WorkerThreads
 from service.storage import NotFoundError, Repository
-from service.storage.records import Quantity
 from service.timing.database_silence import database_trouble
 
 log = structlog.get_logger(__name__)
@@ -98,7 +97,7 @@ class TrendHistory(HistoryManager):  # type: ignore[misc]
     """The values of records. Nothing is stored here: the database has it already."""
 
     def __init__(
-        self, server: InternalServer, repository: Repository, nodes: Mapping[ua.NodeId, tuple[str, Quantity]]
+        self, server: InternalServer, repository: Repository, nodes: Mapping[ua.NodeId, tuple[str, str]]
     ) -> None:
         super().__init__(server)
         self._repository = repository
@@ -141,7 +140,7 @@ class TrendHistory(HistoryManager):  # type: ignore[misc]
             reading.has_failed = True
             return _refused(ua.StatusCodes.BadResourceUnavailable)
 
-    def _place(self, details: object, node: ua.NodeId) -> tuple[str, Quantity]:
+    def _place(self, details: object, node: ua.NodeId) -> tuple[str, str]:
         """Return the motor and the figure whose values are asked for. Raises UaStatusCodeError."""
         if node not in self.iserver.aspace:
             raise ua.UaStatusCodeError(ua.StatusCodes.BadNodeIdUnknown)

@@ -11,7 +11,6 @@ from service.gateways.opcua.history import EPOCH, utc
 from service.gateways.plant_state.device_health import DeviceHealth
 from service.gateways.plant_state.figures import MotorFigures, PlantState, Quality, RelayFigures
 from service.gateways.plant_state.running_state import RunningState
-from service.storage.records import Quantity
 from service.storage.states import AlarmPriority
 
 HEALTHS: Final[Mapping[DeviceHealth, int]] = {
@@ -106,8 +105,11 @@ MOTOR_VARIABLES: Final = (
 BESIDE_RECORDS: Final = frozenset({"Stale", "Alarms", "Priority", "QualityReason"})
 """Variables that are no figures of a record: each has the time at which it was read to be so."""
 
-HISTORIES: Final[Mapping[str, Quantity]] = {"FaultLevel": "mu_f", "Load": "load_level"}
-"""Variables with a history, and the quantity of the trend."""
+HISTORIES: Final[Mapping[str, str]] = {"FaultLevel": "condition_level", "Load": "load_level"}
+"""Variables with a history, and the figure of the trend (core.quantities).
+
+The level is that of the motor's condition, as its variable has it: a record alone may show another.
+"""
 
 
 def motor_value(variable: MotorVariable, motor: MotorFigures, state: PlantState) -> ua.DataValue:

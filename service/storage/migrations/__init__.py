@@ -21,7 +21,7 @@ START_ONCE = "start the service once with these settings (mcc serve), which make
 def migrate(url: str, revision: str = "head") -> None:
     """Create the tables, or bring older ones up to date, or to an older revision that is newer than theirs.
 
-    Do nothing where they are up to date. Raises StorageError (no such URL, a newer version's database, one
+    Do nothing where they are up to date. Raises StorageError (no such URL, another version's database, one
     that cannot hold every text), sqlalchemy.exc.SQLAlchemyError (the database does not answer).
     """
     # It may take minutes, and whoever starts at the same time waits for it.
@@ -74,12 +74,13 @@ def _require_unicode(connection: Connection) -> None:
 
 
 def _require_known(connection: Connection, settings: Config) -> None:
+    """Raise StorageError for tables of another version, older or newer, that no migration leads on from."""
     present = MigrationContext.configure(connection).get_current_revision()
     known = [revision.revision for revision in ScriptDirectory.from_config(settings).walk_revisions()]
     if present is not None and present not in known:
         raise StorageError(
-            f"database_url: expected tables of revision {known[0]} or older, found {present}: a newer "
-            "version has used this database; start that version, or restore the back-up made before"
+            f"database_url: expected tables of revision {known[0]}, found {present}: another version made "
+            "them; start that one to export what you need, and this one with a new, empty database"
         )
 
 

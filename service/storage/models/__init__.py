@@ -24,7 +24,6 @@ from service.storage.models.conditions import (
     FoldMarkRow,
     MotorVersionRow,
     ObservationRow,
-    UnobservedRecordingRow,
 )
 from service.storage.models.counts import StandingAlarmCountRow, StateCountRow
 from service.storage.models.deletions import DeletedRemoteRecordRow, DeletionRow, DiscardedFolderRow
@@ -32,6 +31,7 @@ from service.storage.models.diagnoses import DiagnosisRow, JobRow, JobRunnerRow
 from service.storage.models.measurements import MeasurementRow
 from service.storage.models.notifications import NotificationAlarmRow, NotificationRow
 from service.storage.models.plant import IedRow, MotorRow, SiteRow
+from service.storage.models.record_figures import RecordFiguresRow
 from service.storage.models.recordings import (
     BaselineRecordingRow,
     BaselineRow,
@@ -51,8 +51,6 @@ from service.storage.models.relays import (
 )
 from service.storage.models.rotor import RotorFindingRow
 from service.storage.models.starts import StartRow
-from service.storage.models.supply import SupplyFiguresRow
-from service.storage.models.swings import SwingFindingRow
 
 __all__ = [
     "AlarmChangeRow",
@@ -91,6 +89,7 @@ __all__ = [
     "NotificationRow",
     "ObservationRow",
     "QuarantineRow",
+    "RecordFiguresRow",
     "RecordingFileRow",
     "RecordingRequestRow",
     "RecordingRow",
@@ -104,9 +103,6 @@ __all__ = [
     "StandingAlarmCountRow",
     "StartRow",
     "StateCountRow",
-    "SupplyFiguresRow",
-    "SwingFindingRow",
-    "UnobservedRecordingRow",
     "UserRow",
     "UserSessionRow",
 ]

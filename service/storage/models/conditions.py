@@ -160,7 +160,7 @@ class ConditionChangeRow(Figures, Base):
 class ConditionEventRow(Base):
     """What somebody told of a motor, or what its files tell (core.condition.events).
 
-    account: that told it; null where it was not kept. by: whom somebody named, else the account.
+    account: that told it. by: whom somebody named, else the account.
     withdrawn_...: it was wrong, and counts no more; null while it counts.
     """
 
@@ -171,7 +171,7 @@ class ConditionEventRow(Base):
     time_ns: Mapped[int]
     kind: Mapped[EventKind]
     reason: Mapped[str]
-    account: Mapped[str | None]
+    account: Mapped[str]
     by: Mapped[str]
     made_ns: Mapped[int]
     withdrawn_ns: Mapped[int | None]
@@ -194,7 +194,7 @@ class ConditionCheckpointRow(Base):
     time_ns: Mapped[int] = mapped_column(primary_key=True)
     records: Mapped[int]
     state: Mapped[bytes] = mapped_column(LargeBinary)
-    tracking: Mapped[Mapping[str, object] | None]
+    tracking: Mapped[Mapping[str, object]]
 
 
 class FoldMarkRow(Base):
@@ -222,19 +222,3 @@ class MotorVersionRow(Base):
     motor: Mapped[str] = mapped_column(ForeignKey("motors.name"), primary_key=True)
     from_ns: Mapped[int] = mapped_column(primary_key=True)
     document: Mapped[Mapping[str, object]]
-
-
-class UnobservedRecordingRow(Base):
-    """A recording that was diagnosed before there were observations: it is yet to be observed."""
-
-    __tablename__ = "unobserved_recordings"
-
-    recording_id: Mapped[str] = mapped_column(ForeignKey("recordings.id"), primary_key=True)
-    motor: Mapped[str] = mapped_column(ForeignKey("motors.name"))
-    recorded_ns: Mapped[int]
-
-    __table_args__ = (
-        Index(
-            "ix_unobserved_recordings_motor_recorded_ns_recording_id", "motor", "recorded_ns", "recording_id"
-        ),
-    )

@@ -22,7 +22,10 @@ class MeasurementRow(Base):
     samples: Mapped[int]
     source: Mapped[MeasurementSource] = mapped_column(server_default=MeasurementSource.POLLED)
 
-    __table_args__ = (Index("ix_measurements_step_s_time_ns", "step_s", "time_ns"),)
+    __table_args__ = (
+        Index("ix_measurements_step_s_time_ns", "step_s", "time_ns"),
+        {"postgresql_partition_by": "RANGE (step_s, time_ns)"},
+    )
 
 
 for quantity in MeteredQuantity:

@@ -105,7 +105,7 @@ class RecordingFileRow(Base):
 class BaselineRow(Base):
     """When and by whom a motor's baseline was chosen, and why, where that was said.
 
-    account: that chose it; null where it was not kept. by: whom somebody named, else the account.
+    account: that chose it. by: whom somebody named, else the account.
     """
 
     __tablename__ = "baselines"
@@ -113,8 +113,8 @@ class BaselineRow(Base):
     motor: Mapped[str] = mapped_column(ForeignKey("motors.name"), primary_key=True)
     chosen_ns: Mapped[int]
     reason: Mapped[str | None]
-    account: Mapped[str | None]
-    by: Mapped[str | None]
+    account: Mapped[str]
+    by: Mapped[str]
 
 
 class BaselineRecordingRow(Base):

@@ -14,7 +14,7 @@ class StartRow(Base):
 
     recording_id: of a start that a report alone tells, an id made of motor and time.
 
-    model: torque, parameters, sideband and stress; null for what an earlier version measured.
+    model: torque, parameters, sideband and stress; null where they hold figures that are no numbers.
 
     report: what the relay's motor start report tells of the same start; null where none was brought.
 

@@ -17,7 +17,7 @@ class BaselineDoubt:
 class BaselineEntry:
     """The recordings, oldest first, with those in doubt; when they were chosen, why, and who said so.
 
-    account: that chose them; None where it was not kept. by: whom somebody named, else the account.
+    account: that chose them. by: whom somebody named, else the account.
     A motor without a baseline has one without recordings.
     """
 

@@ -135,8 +135,8 @@ class ConditionChange(ConditionFigures):
 class ConditionEvent:
     """An event of a motor, by whom and when it was told.
 
-    account: that told it; None where it was not kept. by: whom somebody named, or what noticed it, else the
-    account. withdrawn_...: None while it counts.
+    account: that told it. by: whom somebody named, or what noticed it, else the account. withdrawn_...: None
+    while it counts.
     """
 
     id: str
@@ -144,7 +144,7 @@ class ConditionEvent:
     time_ns: int
     kind: EventKind
     reason: str
-    account: str | None
+    account: str
     by: str
     made_ns: int
     withdrawn_ns: int | None = None
@@ -173,8 +173,10 @@ class ConditionEvent:
         return in_words(self.account, self.on_behalf_of)
 
     @property
-    def who_withdrew(self) -> str:
-        """Return who withdrew it, in words."""
+    def who_withdrew(self) -> str | None:
+        """Return who withdrew it, in words; None while it counts."""
+        if self.withdrawn_account is None:
+            return None
         return in_words(self.withdrawn_account, self.withdrawn_on_behalf_of)
 
 
@@ -219,13 +221,13 @@ class TrackedPoint:
 class Checkpoint:
     """What is known once all up to and with `time_ns` is folded; `records` observations.
 
-    tracking: what follows the parameters; None where an earlier version folded.
+    tracking: what follows the parameters.
     """
 
     time_ns: int
     records: int
     state: bytes
-    tracking: Mapping[str, object] | None = None
+    tracking: Mapping[str, object]
 
 
 @dataclass(frozen=True, slots=True)
@@ -297,22 +299,11 @@ class FoldResult:
 
 
 @dataclass(frozen=True, slots=True)
-class ToObserve:
-    """A recording that is yet to be observed, the digest of its files, and its time."""
-
-    recording_id: str
-    motor: str
-    digest: str
-    recorded_ns: int
-
-
-@dataclass(frozen=True, slots=True)
 class Backlog:
-    """How much the conditions are behind: recordings without an observation, motors with changes.
+    """How much the conditions are behind: motors with changes.
 
     motors_set_aside: those whose changes are not folded, because that failed.
     """
 
-    unobserved_recordings: int
     motors_to_fold: int
     motors_set_aside: int = 0

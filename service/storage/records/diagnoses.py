@@ -2,12 +2,10 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from typing import Literal
 
 from core.diagnosis.verdict import Verdict
 from service.storage.states import AlarmKind, JobState, LinkState, RecordingRequestState, RecordingState
-
-Quantity = Literal["mu_f", "theta_f", "load_level"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,55 +95,6 @@ class JobResult:
 def interval_of(low: float | None, high: float | None) -> tuple[float, float] | None:
     """Return an interval from its columns; None where the recording does not tell it."""
     return None if low is None or high is None else (low, high)
-
-
-class TrendPoint(NamedTuple):
-    """One recording's figure; `value` is None where the recording does not tell it.
-
-    ci95: 95 % interval from all causes, of mu_f and load_level.  Of mu_f only: scatter95, from the record's
-    own scatter; detection_limit, the level that nine of ten such recordings show. verdict: a Verdict's value.
-    A page has a thousand points: a named tuple is made in a third of the time of a dataclass, and the value
-    of a Verdict read in a fourth of the time of the Verdict.
-    """
-
-    recorded_ns: int
-    value: float | None
-    ci95_low: float | None
-    ci95_high: float | None
-    scatter95_low: float | None
-    scatter95_high: float | None
-    detection_limit: float | None
-    verdict: str
-    recording_id: str
-
-    @property
-    def ci95(self) -> tuple[float, float] | None:
-        """Return the 95 % interval from all causes."""
-        return interval_of(self.ci95_low, self.ci95_high)
-
-    @property
-    def scatter95(self) -> tuple[float, float] | None:
-        """Return the 95 % interval from the record's own scatter."""
-        return interval_of(self.scatter95_low, self.scatter95_high)
-
-
-@dataclass(frozen=True, slots=True)
-class DiagnosisPoint:
-    """All figures of one recording; None where the recording does not tell them."""
-
-    time_ns: int
-    recording_id: str
-    verdict: Verdict
-    mu_f: float | None
-    mu_f_ci95_low: float | None
-    mu_f_ci95_high: float | None
-    mu_f_scatter95_low: float | None
-    mu_f_scatter95_high: float | None
-    detection_limit: float | None
-    theta_f: int | None
-    load_level: float | None
-    load_level_ci95_low: float | None
-    load_level_ci95_high: float | None
 
 
 @dataclass(frozen=True, slots=True)

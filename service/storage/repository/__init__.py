@@ -17,16 +17,16 @@ from service.storage.repository.conditions.observations import ObservationRows
 from service.storage.repository.conditions.tracking import TrackingRows
 from service.storage.repository.history.condition_days import ConditionDayRows
 from service.storage.repository.history.conditions import PastConditionRows
+from service.storage.repository.history.figure_trends import FigureTrendRows
 from service.storage.repository.history.journal import JournalRows
 from service.storage.repository.history.metered import MeteredRows
 from service.storage.repository.history.neighbours import NeighbourRows
+from service.storage.repository.history.record_figures import RecordFigureRows
 from service.storage.repository.history.rotor import RotorRows
 from service.storage.repository.history.seen_records import SeenRecordRows
 from service.storage.repository.history.start_reference import StartReferenceRows
 from service.storage.repository.history.start_reports import StartReportRows
 from service.storage.repository.history.starts import StartRows
-from service.storage.repository.history.supply import SupplyRows
-from service.storage.repository.history.swings import SwingRows
 from service.storage.repository.history.thinned_trend import ThinnedTrendRows
 from service.storage.repository.jobs.notices import JobNoticeRows
 from service.storage.repository.jobs.queue import JobRows
@@ -79,8 +79,8 @@ class Repository(
     StartReferenceRows,
     StartReportRows,
     RotorRows,
-    SupplyRows,
-    SwingRows,
+    RecordFigureRows,
+    FigureTrendRows,
     ThinnedTrendRows,
     NeighbourRows,
     PastConditionRows,

@@ -1,6 +1,7 @@
 """The partitions of the measured values: made before their rows come, dropped when all of them are old."""
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 from sqlalchemy import Connection
@@ -35,12 +36,7 @@ class MeasurementPartitionRows(Sessions):
 
         None on SQLite, and where others used the table all the time: the next round does it.
         """
-
-        def drop(connection: Connection) -> Sequence[Period]:
-            dropped = partitions.drop(connection, step_s, before_ns=before_ns)
-            partitions.drop_empty_before(connection)
-            return dropped
-
+        drop = partial(partitions.drop, step_s=step_s, before_ns=before_ns)
         return tuple(period.name for period in self._changed(drop))
 
     def _changed(self, change: Callable[[Connection], Sequence[Period]]) -> Sequence[Period]:
@@ -50,7 +46,7 @@ class MeasurementPartitionRows(Sessions):
             with self._write() as session:
                 connection = session.connection()
                 one_at_a_time(connection, WORK)
-                return change(connection) if partitions.has_partitions(connection) else ()
+                return change(connection)
         except OperationalError as error:
             if _code(error.orig) != _IN_USE:
                 raise

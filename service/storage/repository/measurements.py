@@ -11,7 +11,6 @@ from sqlalchemy import (
     ColumnElement,
     Insert,
     Integer,
-    TableClause,
     bindparam,
     case,
     column,
@@ -28,7 +27,7 @@ from core.units import NANOSECONDS_PER_SECOND
 from service.plant import AveragingStep, MeteredQuantity
 from service.storage.engine import one_at_a_time
 from service.storage.models import MeasurementRow, MotorRow
-from service.storage.partitions import row_wise
+from service.storage.partitions import DEFAULT, TABLE
 from service.storage.records import Cursor, DeletedRows, Measurement, Page, Sample
 from service.storage.repository.sessions import Order, Sessions, found, page_of, within
 from service.storage.states import MeasurementSource
@@ -99,15 +98,8 @@ class MeasurementRows(Sessions):
 
         rows: about how many at most. Those of one time go together, so it may be one more for each motor.
         """
-        with self._read() as session:
-            tables = [_times_of(name) for name in row_wise(session.connection())]
-        for one in tables:
-            deleted = self._forget_of(one, step_s, rows, before_ns)
-            if deleted.rows:
-                return deleted
-        return DeletedRows(0, 0.0)
-
-    def _forget_of(self, old: TableClause, step_s: int, rows: int, before_ns: int) -> DeletedRows:
+        name = DEFAULT if self._reading.dialect.name == "postgresql" else TABLE
+        old = table(name, column("step_s", BigInteger), column("time_ns", BigInteger))
         of_step = old.c.step_s == step_s
         in_order = select(old.c.time_ns).where(of_step, old.c.time_ns < before_ns).order_by(old.c.time_ns)
         with self._read() as session:
@@ -140,11 +132,6 @@ class MeasurementRows(Sessions):
         with self._read() as session:
             found(session, MotorRow, motor, "motor")
             return page_of(session, query, order, _measurement, limit=limit, after=after)
-
-
-def _times_of(name: str) -> TableClause:
-    """Return a table of measured values with the columns that say which of them are old."""
-    return table(name, column("step_s", BigInteger), column("time_ns", BigInteger))
 
 
 def insert_samples(session: Session, samples: Iterable[Sample], source: MeasurementSource) -> None:

@@ -1,19 +1,16 @@
-"""What is known of motors: the latest diagnosis, the relay, and the trend."""
+"""What is known of motors now: the condition, the latest diagnosis, the relay."""
 
-from collections.abc import Callable, Sequence
-from typing import Any, TypeVar
+from collections.abc import Sequence
+from typing import Any
 
 from sqlalchemy import (
     BindParameter,
     ColumnElement,
     Select,
-    String,
     and_,
     bindparam,
     func,
-    null,
     select,
-    type_coerce,
     union_all,
 )
 from sqlalchemy.orm import Session, aliased
@@ -27,24 +24,19 @@ from service.storage.models import (
 )
 from service.storage.records import (
     Cursor,
-    DiagnosisPoint,
     IedEntry,
     LatestDiagnosis,
     LatestFigures,
     MotorEntry,
     MotorHealth,
     Page,
-    Quantity,
     RecordedStarts,
     RecordingEntry,
-    TrendPoint,
 )
 from service.storage.repository.conditions.conditions import conditions_of
 from service.storage.repository.overviews.fleet import latest_figures_of
-from service.storage.repository.sessions import Order, Sessions, columns_of, found, page_of, record_of, within
+from service.storage.repository.sessions import Sessions, columns_of, found, page_of, record_of
 from service.storage.states import RecordingState
-
-Point = TypeVar("Point")
 
 _LEVEL = (
     DiagnosisRow.mu_f,
@@ -55,13 +47,6 @@ _LEVEL = (
     DiagnosisRow.detection_limit,
 )
 _LOAD = (DiagnosisRow.load_level, DiagnosisRow.load_level_ci95_low, DiagnosisRow.load_level_ci95_high)
-_FIGURES = {
-    "mu_f": _LEVEL,
-    "theta_f": (DiagnosisRow.theta_f, *(null(),) * 5),
-    "load_level": (*_LOAD, *(null(),) * 3),
-}
-"""A figure, its interval, its scatter and its detection limit; null where there is none."""
-_VERDICT_TEXT = type_coerce(DiagnosisRow.verdict, String)
 _SAID = (
     DiagnosisRow.motor,
     DiagnosisRow.recording_id,
@@ -97,80 +82,6 @@ class MotorHealthRows(Sessions):
         """Return the figures of the latest recording of each motor in service that has any, by name."""
         with self._read() as session:
             return latest_figures_of(session)
-
-    def trend(
-        self,
-        motor: str,
-        quantity: Quantity,
-        *,
-        limit: int,
-        from_ns: int | None = None,
-        to_ns: int | None = None,
-        after: Cursor | None = None,
-        descending: bool = False,
-    ) -> Page[TrendPoint]:
-        """Return a figure of each recording, oldest first, from_ns <= time < to_ns. Raises NotFoundError.
-
-        descending: newest first instead.
-        Recordings of a motor that stands, starts, stops or trips are not among them.
-        """
-        columns = (DiagnosisRow.recorded_ns, *_FIGURES[quantity], _VERDICT_TEXT, DiagnosisRow.recording_id)
-        return self._points(
-            motor,
-            columns,
-            TrendPoint,
-            from_ns=from_ns,
-            to_ns=to_ns,
-            limit=limit,
-            after=after,
-            descending=descending,
-        )
-
-    def diagnosis_trend(
-        self,
-        motor: str,
-        *,
-        limit: int,
-        from_ns: int | None = None,
-        to_ns: int | None = None,
-        after: Cursor | None = None,
-    ) -> Page[DiagnosisPoint]:
-        """Return all figures of each recording that the trend has, oldest first. Raises NotFoundError."""
-        columns = (
-            DiagnosisRow.recorded_ns,
-            DiagnosisRow.recording_id,
-            DiagnosisRow.verdict,
-            *_LEVEL,
-            DiagnosisRow.theta_f,
-            *_LOAD,
-        )
-        return self._points(
-            motor, columns, DiagnosisPoint, from_ns=from_ns, to_ns=to_ns, limit=limit, after=after
-        )
-
-    def _points(
-        self,
-        motor: str,
-        columns: Sequence[Any],
-        to_point: Callable[..., Point],
-        *,
-        limit: int,
-        from_ns: int | None,
-        to_ns: int | None,
-        after: Cursor | None,
-        descending: bool = False,
-    ) -> Page[Point]:
-        # All of these columns are in the index: no row with its document is read.
-        query = select(*columns).where(
-            DiagnosisRow.motor == motor, DiagnosisRow.current, DiagnosisRow.says_nothing.is_(False)
-        )
-        query = query.where(*within(DiagnosisRow.recorded_ns, from_ns, to_ns))
-        order: Order = [DiagnosisRow.recorded_ns, DiagnosisRow.id]
-        with self._read() as session:
-            points = page_of(session, query, order, to_point, limit=limit, after=after, descending=descending)
-            if not points.items:  # a motor that has any is known
-                found(session, MotorRow, motor, "motor")
-            return points
 
 
 def _health_of(session: Session, motors: Sequence[MotorEntry]) -> tuple[MotorHealth, ...]:

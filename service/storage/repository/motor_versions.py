@@ -79,7 +79,7 @@ def _note(session: Session, motor: str, document: Mapping[str, Any], now_ns: int
             mark(session, motor, EARLIEST_NS)
         return
     if not edits:
-        latest.document = document  # a table that earlier versions did not keep
+        latest.document = document  # the table of a rotor's winding may have come or gone
         return
     if latest_ns is None or latest.from_ns == now_ns:  # no record has seen the machine as it was
         latest.document = document
@@ -117,9 +117,8 @@ def _edits(before: Mapping[str, Any], after: Mapping[str, Any]) -> Iterator[str]
                 yield f"{name} {value} instead of {old}"
 
 
-def _source(document: Mapping[str, Any]) -> str | None:
-    source = document.get("tolerances", {}).get("source")
-    return None if source is None else str(source)
+def _source(document: Mapping[str, Any]) -> str:
+    return str(document["tolerances"]["source"])
 
 
 def _rows(session: Session, motor: str) -> Sequence[MotorVersionRow]:

@@ -2,11 +2,11 @@
 
 from collections.abc import Mapping, Sequence
 
-from sqlalchemy import bindparam, delete, func, select, update
+from sqlalchemy import bindparam, func, select, update
 
 from service.plant import Plant, PlantMotor, Schedule
 from service.storage.engine import one_at_a_time
-from service.storage.models import ConditionRow, IedRow, MotorRow, SiteRow, UnobservedRecordingRow
+from service.storage.models import ConditionRow, IedRow, MotorRow, SiteRow
 from service.storage.records import (
     SERVICE,
     ClockNote,
@@ -84,11 +84,6 @@ class PlantRows(Sessions):
                     )
                 )
             session.flush()
-            # Nobody observes them, and a rule of retention waits until they are observed.
-            out_of_service = select(MotorRow.name).where(MotorRow.in_service.is_(False))
-            session.execute(
-                delete(UnobservedRecordingRow).where(UnobservedRecordingRow.motor.in_(out_of_service))
-            )
             if noted_ns is not None:
                 note_plant_changes(session, before, SERVICE, now_ns=noted_ns)
             for name in _of_changed_buses(buses_before, plant):

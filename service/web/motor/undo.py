@@ -15,9 +15,7 @@ def may_undo(note: ConditionEvent, account: str, now_ns: int) -> bool:
     """Tell whether an account may undo what became of a note last: that it was written, or retracted."""
     if note.kind is EventKind.NOTE and note.withdrawn_ns is None:
         return False  # it changed nothing
-    at_ns, by = note.made_ns, note.account
-    if note.withdrawn_ns is not None:
-        at_ns, by = note.withdrawn_ns, note.withdrawn_account
+    by, at_ns = note.withdrawn_account or note.account, note.withdrawn_ns or note.made_ns
     return by == account and 0 <= now_ns - at_ns <= UNDO_NS
 
 

@@ -37,13 +37,12 @@ class SupplyShown:
 
 
 def rotor_shown(diagnosis: Diagnosis | None) -> RotorShown | None:
-    """Return what a diagnosis says of the rotor; None of one by an earlier version, and without one."""
+    """Return what a diagnosis says of the rotor; None where it says nothing."""
     if diagnosis is None or diagnosis.rotor is None:
         return None
     fields = diagnosis.rotor.model_dump()
     finding = RotorFinding(**{**fields, "reasons": tuple(fields["reasons"])})
     gap, swings = None, []
-    # Earlier versions kept neither.
     if diagnosis.eccentricity is not None and diagnosis.pulsation is not None:
         fields = diagnosis.eccentricity.model_dump()
         eccentricity = EccentricityFinding(**{**fields, "reasons": tuple(fields["reasons"])})

@@ -117,7 +117,7 @@ def recording_page(context: ApiContext, recording_id: str, at_s: float | None) -
 
 
 def _answer(diagnosis: Diagnosis | None) -> AnswerShown | None:
-    """Return the answer of a diagnosis; None of one by an earlier version, and without one."""
+    """Return the answer of a diagnosis; None where it gives none."""
     if diagnosis is None or diagnosis.classification is None:
         return None
     return answer_shown(diagnosis.classification.model_dump())

@@ -49,9 +49,8 @@ class ComparedStart:
 class StartsOfMotor:
     """The starts of a motor. current, voltage: pictures as SVG; voltage is None where no start has any.
 
-    renewed: what made the reference begin anew; None where nothing did.  unmeasured: recordings of starts
-    that an earlier version has diagnosed.  changes: why the latest starts, taken together, are other than the
-    first ones; None where there are no others.
+    renewed: what made the reference begin anew; None where nothing did.  changes: why the latest starts,
+    taken together, are other than the first ones; None where there are no others.
     """
 
     starts: Sequence[ComparedStart]
@@ -63,7 +62,6 @@ class StartsOfMotor:
     torque: Markup | None
     changes: StartChanges | None
     drawn: int
-    unmeasured: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +70,6 @@ class AllStarts:
 
     starts: Sequence[StartEntry]
     next_path: str | None
-    unmeasured: int
 
 
 def starts_of_motor(
@@ -109,7 +106,6 @@ def starts_of_motor(
         torque=_torque(motor, drawn, reference, look),
         changes=first_ones.compared(latest[:LATEST]),
         drawn=len(drawn),
-        unmeasured=repository.unmeasured_starts(motor),
     )
 
 
@@ -135,7 +131,7 @@ def all_starts(repository: Repository, cursor: str | None) -> AllStarts:
     """Read what the page of all starts shows. Raises ProblemError."""
     page = repository.starts(limit=MOST_LISTED, after=decode(cursor, int, str))
     further = None if page.next is None else address("/starts", cursor=encode(page.next))
-    return AllStarts(page.items, further, repository.unmeasured_starts())
+    return AllStarts(page.items, further)
 
 
 def compared(entry: StartEntry, reference: StartEntry | None) -> ComparedStart:

@@ -49,7 +49,6 @@ DO_NOT_GROW = frozenset(
         "relay_findings",
         "standing_alarm_counts",
         "state_counts",
-        "unobserved_recordings",
     }
 )
 """Tables that are as large as the plant is, or as the work of the moment."""

@@ -9,7 +9,7 @@ import pytest
 from service.backup.errors import BackupError
 from service.backup.restoring import Place, restore_backup
 from service.process.single_instance import AlreadyRunningError
-from service.storage import connect, migrate
+from service.storage import connect
 from tests.service.backup.conftest import Data, Rows, files_below
 
 
@@ -83,36 +83,6 @@ def test_a_damaged_database_is_replaced_too_and_kept(data: Data, look: Callable[
     assert look(data.url) == before
     assert restored.former is not None
     assert restored.former.read_bytes() == b"no database any more"
-
-
-def test_the_back_up_of_an_older_version_is_brought_up_to_date_by_the_service(
-    empty_place: Place, data: Data, tmp_path: Path, request: pytest.FixtureRequest
-) -> None:
-    """Its tables are restored as they were; the service changes them when it starts."""
-    from alembic import command
-
-    from service.backup.making import Source, backup_directory, make_backup
-    from service.storage import migrations
-
-    data.record("R")
-    data.engine.dispose()
-    older = connect(data.url)
-    with older.begin() as connection:
-        command.downgrade(migrations.config(connection), "0030")
-    older.dispose()
-    directory = tmp_path / "old"
-    source = Source(data.url, data.store.root, {})
-    with backup_directory(directory, source):
-        made = make_backup(source, directory)
-    assert made.manifest.revision == "0030"
-    restore_backup(directory, empty_place)
-    migrate(empty_place.database_url)
-    migrate(data.url)
-    assert request.node
-    engine = connect(empty_place.database_url)
-    with engine.connect() as connection:
-        assert connection.exec_driver_sql("SELECT count(*) FROM recordings").scalar() == 1
-    engine.dispose()
 
 
 def test_the_audit_trail_is_guarded_again(data: Data, empty_place: Place) -> None:

@@ -9,7 +9,7 @@ from dataclasses import replace
 from multiprocessing import get_context
 
 import pytest
-from sqlalchemy import Engine, update
+from sqlalchemy import Engine
 from sqlalchemy.orm import Session
 
 from core.condition.events import Event, EventKind
@@ -26,7 +26,7 @@ from service.condition.worker import fold_due
 from service.plant import Bus
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect
-from service.storage.models import ConditionCheckpointRow, MotorVersionRow
+from service.storage.models import ConditionCheckpointRow
 from service.storage.records import SERVICE, FoldInput, FoldResult
 from service.storage.repository.conditions.folding import FoldingRows
 from testing.service.following import FAN, PUMP, Recorder, fold_all, note_motors, on_one_bus
@@ -199,22 +199,6 @@ def test_a_commissioned_motor_has_its_records_judged_again_from_the_first(
     fold_all(repository)
     require_same(repository, followed(RECORDS[:17]))
     assert repository.condition(PUMP).state == "healthy"
-    assert repository.events(PUMP, limit=10).items == ()
-
-
-def test_what_an_earlier_version_did_not_keep_is_no_edit(
-    repository: Repository, recorder: Recorder, engine: Engine
-) -> None:
-    now = document_of(motor(PUMP))
-    with Session(engine) as session, session.begin():
-        kept = {table: figures for table, figures in now.items() if table != "tolerances"}
-        session.execute(update(MotorVersionRow).where(MotorVersionRow.motor == PUMP).values(document=kept))
-    recorder.record_all(RECORDS[:2])
-    fold_all(repository)
-    repository.note_motors({PUMP: now}, now_ns=NOW_NS)
-    assert repository.motors_to_fold() == ()
-    (version,) = repository.motor_versions(PUMP)
-    assert version.document == now
     assert repository.events(PUMP, limit=10).items == ()
 
 

@@ -45,7 +45,7 @@ def test_motors_that_other_rules_judged_are_judged_again_in_the_background(
     before = repository.condition(PUMP)
 
     def started() -> ConditionWork:
-        conditions = ConditionWork(repository, store, MOTORS, database_url=database_url)
+        conditions = ConditionWork(repository, MOTORS, database_url=database_url)
         conditions.begin()
         return conditions
 
@@ -86,14 +86,14 @@ def test_new_records_come_before_motors_that_are_judged_again(
         recorder.record_all(spread[:10], name)
     fold_all(repository, motors[names[2]])
     other_rules(monkeypatch, "another")
-    conditions = ConditionWork(repository, store, motors, database_url=database_url)
+    conditions = ConditionWork(repository, motors, database_url=database_url)
     conditions.begin()
     assert repository.motors_to_fold() == ()
     task = conditions.next_task()
     assert task is not None
     conditions.ended(task, failed(RuntimeError("a bug")))
     assert conditions.next_task() is None, "no other one begins while this one waits to be tried again"
-    conditions = ConditionWork(repository, store, motors, database_url=database_url)
+    conditions = ConditionWork(repository, motors, database_url=database_url)
     conditions.begin()
     assert not repository.judge_anew(FAN, "another"), "it has its mark"
     given = [one_part(conditions, repository, 4) for _ in range(2)]
@@ -123,11 +123,11 @@ def test_a_motor_out_of_service_is_judged_again_when_it_is_back(
     plant = two_motor_plant()
     without = tuple(one for one in plant.motors if one.name != PUMP)
     other_rules(monkeypatch, "another")
-    conditions = ConditionWork(repository, store, MOTORS, database_url=database_url)
+    conditions = ConditionWork(repository, MOTORS, database_url=database_url)
     repository.sync_plant(replace(plant, motors=without))
     conditions.begin()
     assert conditions.next_task() is None
-    assert repository.backlog() == Backlog(0, 0)
+    assert repository.backlog() == Backlog(0)
     repository.sync_plant(plant)
     conditions.begin()
     while conditions.next_task() is not None:

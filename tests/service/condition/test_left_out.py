@@ -1,53 +1,22 @@
-"""Recordings that cannot be observed or folded are left out at last, and tried again later."""
+"""Recordings that cannot be folded are left out at last, and tried again later."""
 
 import pickle
 from concurrent.futures import Future
 from typing import Any
 
 import pytest
-from sqlalchemy import Engine
-from sqlalchemy.orm import Session
 
 from core.condition.following.follower import Follower
 from core.condition.observation import Observation
 from service.condition import work
 from service.condition.errors import RecordFoldError
 from service.condition.work import ConditionWork
-from service.condition.worker import ObserveTask
+from service.condition.worker import fold_motor
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
-from service.storage.models import UnobservedRecordingRow
 from service.timing.backoff import Backoff
 from testing.service.following import FAN, PUMP, Recorder, fold_all
-from testing.service.plants import NOW_NS
-from tests.service.condition.tasks import MOTORS, RECORDS, failed
-
-
-def test_a_recording_that_brings_its_worker_down_is_left_out_at_last(
-    repository: Repository,
-    store: RecordingStore,
-    database_url: str,
-    engine: Engine,
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr(work, "FAILURES", Backoff(0.0, 0.0))
-    recorder = Recorder(repository, store)
-    ids = [recorder.record(None) for _ in range(3)]
-    with Session(engine) as session, session.begin():
-        session.add_all(
-            UnobservedRecordingRow(recording_id=id_, motor=PUMP, recorded_ns=NOW_NS + at)
-            for at, id_ in enumerate(ids)
-        )
-    conditions = ConditionWork(repository, store, MOTORS, database_url=database_url)
-    asked = []
-    for _ in range(3):
-        task = conditions.next_task()
-        assert task is not None
-        assert isinstance(task.argument, ObserveTask)
-        asked.append([one.recording_id for one in task.argument.recordings])
-        conditions.ended(task, failed(RuntimeError("its worker died")))
-    assert asked == [ids, ids[:1], ids[:1]]
-    assert repository.backlog().unobserved_recordings == 2
+from tests.service.condition.tasks import MOTORS, RECORDS
 
 
 def test_a_record_that_cannot_be_folded_is_left_out_at_last_and_the_others_count(
@@ -66,14 +35,14 @@ def test_a_record_that_cannot_be_folded_is_left_out_at_last_and_the_others_count
         fold(follower, observation, *others)
 
     monkeypatch.setattr(Follower, "fold", failing)
-    conditions = ConditionWork(repository, store, MOTORS, database_url=database_url)
+    conditions = ConditionWork(repository, MOTORS, database_url=database_url)
     tries = 0
     while (task := conditions.next_task()) is not None:
         tries += 1
         assert tries < 10
         future: Future[int] = Future()
         try:
-            future.set_result(task.function(task.argument))
+            future.set_result(fold_motor(task.fold))
         except RecordFoldError as error:
             future.set_exception(pickle.loads(pickle.dumps(error)))  # noqa: S301 - as from a worker
         conditions.ended(task, future)

@@ -119,7 +119,6 @@ def test_edited_parameters_begin_another_reference() -> None:
     tracking = Tracking.begun(plain, ())
     tracking.apply(Event(NOW_NS, EventKind.PARAMETERS_EDITED), other)
     found = tracking.found()
-    assert found is not None
     assert TrackedParameters.from_dict(found).parameters[1].reference == 9.1
 
 
@@ -137,15 +136,6 @@ def test_starts_are_followed_in_their_order_among_records() -> None:
     whole.follow_starts()
     again.follow_starts()
     one, other = whole.found(), again.found()
-    assert one is not None
-    assert other is not None
     rotor = TrackedParameters.from_dict(one).parameters[1]
     assert rotor.state is TrackedParameters.from_dict(other).parameters[1].state
     assert rotor.state is not TrackingState.UNDETERMINED
-
-
-def test_nothing_is_followed_from_a_checkpoint_of_an_earlier_version() -> None:
-    tracking = Tracking.restored(motor(PUMP), None, ())
-    tracking.follow_starts()
-    assert tracking.found() is None
-    assert tracking.document() is None

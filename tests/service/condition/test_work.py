@@ -1,4 +1,4 @@
-"""Workers that have nothing to diagnose fold conditions, and observe recordings from before."""
+"""Workers that have nothing to diagnose fold conditions."""
 
 import os
 import signal
@@ -8,39 +8,28 @@ from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import replace
-from pathlib import Path
 
-import numpy as np
 import pytest
-from alembic import command
 from pebble import ProcessExpired
-from sqlalchemy import Engine
 from sqlalchemy.exc import OperationalError
-from sqlalchemy.orm import Session
 
 from core.machines.parameters import Motor, ParametersSource
-from core.recordings.comtrade.writer import write
 from core.time_stamps import nanoseconds
 from service.alarms.condition_rules import ConditionRules
 from service.api.conditions.documents import condition_document
 from service.condition import work, worker
 from service.condition.work import ConditionWork
-from service.condition.worker import FoldTask, ObserveTask, fold_due
+from service.condition.worker import fold_due
 from service.jobs.limits import JobLimits
 from service.jobs.runner import JobRunner
 from service.jobs.task import Diagnosed, DiagnosisTask, Outcome
 from service.jobs.worker_process import follow_service
 from service.recording_store.store import RecordingStore
-from service.storage import Repository, migrate
-from service.storage.migrations import config
-from service.storage.models import UnobservedRecordingRow
+from service.storage import Repository
 from service.storage.records import Backlog
 from service.storage.states import JobState
 from service.timing.backoff import Backoff
-from testing.machines.motors import REFERENCE
-from testing.machines.phase_circuits import recording as waveforms
-from testing.machines.phase_circuits import running as operating
-from testing.service.following import FAN, PUMP, Recorder, fold_all, note_motors, on_one_bus
+from testing.service.following import FAN, PUMP, Recorder, fold_all
 from testing.service.observations import HOUR_NS
 from testing.service.plants import NOW_NS, healthy
 from testing.waiting import wait_until
@@ -68,7 +57,7 @@ def running(
     database_url: str,
     prepare_worker: Callable[[], None] = follow_service,
 ) -> Iterator[JobRunner]:
-    conditions = ConditionWork(repository, store, MOTORS, database_url=database_url)
+    conditions = ConditionWork(repository, MOTORS, database_url=database_url)
     runner = JobRunner(
         repository,
         store,
@@ -87,22 +76,10 @@ def running(
         runner.stop()
 
 
-def test_what_comes_and_what_a_database_of_before_holds_ends_in_conditions(
-    repository: Repository, store: RecordingStore, database_url: str, engine: Engine, tmp_path: Path
+def test_what_comes_ends_in_conditions(
+    repository: Repository, store: RecordingStore, database_url: str
 ) -> None:
-    """One run for all of it: workers take seconds to load. A recording that cannot be read holds up none."""
-    register = Recorder(repository, store)
-    for number in range(3):
-        files = real_files(tmp_path / f"R{number}", number)
-        repository.add_recording(store.store(files), motor=PUMP, now_ns=NOW_NS)
-        register.diagnose(replace(RECORDS[0], time_ns=NOW_NS + number * HOUR_NS))
-    unreadable = register.record(RECORDS[4])
-    with engine.begin() as connection:
-        command.downgrade(config(connection), "0022")
-    migrate(database_url)
-    note_motors(repository)
-    assert repository.backlog().unobserved_recordings == 4
-    assert repository.condition(PUMP).state == "unknown"
+    """One run for all of it: workers take seconds to load."""
     for at in reversed(range(len(RECORDS))):
         stored = store.store({"E.CFF": str(at).encode()})
         repository.add_recording(stored, motor=FAN, now_ns=time.time_ns())
@@ -113,12 +90,12 @@ def test_what_comes_and_what_a_database_of_before_holds_ends_in_conditions(
         for at in WRONG_CLOCKS
     ]
     with running(repository, store, database_url) as runner:
-        done = 4 + len(RECORDS) + len(wrong_clocks)
+        done = len(RECORDS) + len(wrong_clocks)
         wait_until(lambda: repository.counts().jobs == {JobState.DONE: done}, within_s=60)
-        wait_until(lambda: repository.backlog() == Backlog(0, 0), within_s=60)
+        wait_until(lambda: repository.backlog() == Backlog(0), within_s=60)
         assert runner.problem() is None
-    points = {name: repository.condition_trend(name, limit=100).items for name in (PUMP, FAN)}
-    assert [point.time_ns for point in points[FAN]] == [record.time_ns for record in RECORDS]
+    points = repository.condition_trend(FAN, limit=100).items
+    assert [point.time_ns for point in points] == [record.time_ns for record in RECORDS]
     assert repository.condition(FAN).as_of_ns == RECORDS[-1].time_ns
     for id_, wrong in zip(wrong_clocks, ("2095", "before the year 2000"), strict=True):
         assert repository.observation(id_) is None
@@ -126,22 +103,6 @@ def test_what_comes_and_what_a_database_of_before_holds_ends_in_conditions(
         assert reason is not None
         assert wrong in reason
         assert "set the relay's clock" in reason
-    assert len(points[PUMP]) == 3
-    assert repository.observation(unreadable) is None
-    found = repository.observation(points[PUMP][0].recording_id)
-    assert found is not None
-    assert abs(found.observation.positive_voltage_V) == pytest.approx(310.0, rel=0.05)
-
-
-def real_files(path: Path, seed: int) -> dict[str, Path]:
-    """The files of a record of the reference motor."""
-    record = waveforms(operating(REFERENCE, 0.5), noise=0.002, seed=seed)
-    channels = tuple(
-        replace(channel, full_scale=2.0 * float(np.abs(samples).max()))
-        for channel, samples in zip(record.channels, record.samples, strict=True)
-    )
-    entry = write(path, replace(record, channels=channels, start_time_ns=NOW_NS + seed * HOUR_NS))
-    return {one.name: one for one in (entry, entry.with_suffix(".DAT"))}
 
 
 def test_motors_take_turns_and_each_has_one_task(
@@ -150,7 +111,7 @@ def test_motors_take_turns_and_each_has_one_task(
     recorder = Recorder(repository, store)
     for name in (PUMP, FAN):
         recorder.record(RECORDS[0], name)
-    conditions = ConditionWork(repository, store, MOTORS, database_url=database_url)
+    conditions = ConditionWork(repository, MOTORS, database_url=database_url)
     tasks = [conditions.next_task() for _ in range(3)]
     given = [task for task in tasks if task is not None]
     assert sorted(task.motor for task in given) == [FAN, PUMP]
@@ -173,7 +134,7 @@ def test_a_motor_that_cannot_be_folded_is_tried_again_later(
     Recorder(repository, store).record(RECORDS[0])
     for pause_s in (100.0, 0.0):
         monkeypatch.setattr(work, "FAILURES", Backoff(pause_s, pause_s))
-        conditions = ConditionWork(repository, store, MOTORS, database_url=database_url)
+        conditions = ConditionWork(repository, MOTORS, database_url=database_url)
         task = conditions.next_task()
         assert task is not None
         conditions.ended(task, failed(RuntimeError("a bug")))
@@ -203,7 +164,7 @@ def test_a_motor_whose_fold_fails_three_times_is_set_aside_until_something_chang
     recorder = Recorder(repository, store)
     (first, *_) = recorder.record_all(RECORDS[:2])
     recorder.record(RECORDS[0], FAN)
-    conditions = ConditionWork(repository, store, MOTORS, database_url=database_url)
+    conditions = ConditionWork(repository, MOTORS, database_url=database_url)
 
     def tries() -> int:
         """How often the pump is tried; every try fails. The fan is folded."""
@@ -214,8 +175,7 @@ def test_a_motor_whose_fold_fails_three_times_is_set_aside_until_something_chang
                 conditions.ended(task, failed(error))
             else:
                 folded: Future[int] = Future()
-                assert isinstance(task.argument, FoldTask)
-                folded.set_result(fold_due(repository, task.argument.motor))
+                folded.set_result(fold_due(repository, task.fold.motor))
                 conditions.ended(task, folded)
         return number
 
@@ -223,7 +183,7 @@ def test_a_motor_whose_fold_fails_three_times_is_set_aside_until_something_chang
     assert repository.condition(FAN).as_of_ns == RECORDS[0].time_ns
     problem = repository.condition(PUMP).problem
     assert problem == f"folding failed 3 times, the last time: {words}"
-    assert repository.backlog() == Backlog(0, motors_to_fold=0, motors_set_aside=1)
+    assert repository.backlog() == Backlog(motors_to_fold=0, motors_set_aside=1)
     told = condition_document(repository.condition(PUMP), NOW_NS, HOUR_NS, source=ParametersSource.GIVEN)
     assert problem in told.reasons[0]
     assert "tried again with the next record" in told.reasons[0]
@@ -232,7 +192,7 @@ def test_a_motor_whose_fold_fails_three_times_is_set_aside_until_something_chang
     assert tries() == 3, "a new record"
     recorder.diagnose_again(first, RECORDS[0])
     assert tries() == 3, "another diagnosis"
-    conditions = ConditionWork(repository, store, MOTORS, database_url=database_url)
+    conditions = ConditionWork(repository, MOTORS, database_url=database_url)
     assert tries() == 0
     conditions.begin()
     assert tries() == 3, "a service that starts"
@@ -240,7 +200,7 @@ def test_a_motor_whose_fold_fails_three_times_is_set_aside_until_something_chang
     fold_all(repository)
     assert repository.condition(PUMP).problem is None
     assert repository.condition(PUMP).as_of_ns == RECORDS[3].time_ns, "all of them count in the end"
-    assert repository.backlog() == Backlog(0, 0)
+    assert repository.backlog() == Backlog(0)
 
 
 def test_a_record_that_comes_during_the_failing_fold_has_the_motor_tried_again(
@@ -249,7 +209,7 @@ def test_a_record_that_comes_during_the_failing_fold_has_the_motor_tried_again(
     monkeypatch.setattr(work, "FAILURES", Backoff(0.0, 0.0))
     recorder = Recorder(repository, store)
     recorder.record(RECORDS[0])
-    conditions = ConditionWork(repository, store, MOTORS, database_url=database_url)
+    conditions = ConditionWork(repository, MOTORS, database_url=database_url)
     for number in range(3):
         task = conditions.next_task()
         assert task is not None
@@ -261,7 +221,7 @@ def test_a_record_that_comes_during_the_failing_fold_has_the_motor_tried_again(
     fold_all(repository)
     assert repository.condition(PUMP).problem is None
     assert repository.condition(PUMP).as_of_ns == RECORDS[1].time_ns
-    assert repository.backlog() == Backlog(0, 0)
+    assert repository.backlog() == Backlog(0)
 
 
 def test_a_database_that_does_not_answer_sets_no_motor_aside(
@@ -269,7 +229,7 @@ def test_a_database_that_does_not_answer_sets_no_motor_aside(
 ) -> None:
     monkeypatch.setattr(work, "FAILURES", Backoff(0.0, 0.0))
     Recorder(repository, store).record(RECORDS[0])
-    conditions = ConditionWork(repository, store, MOTORS, database_url=database_url)
+    conditions = ConditionWork(repository, MOTORS, database_url=database_url)
     for _ in range(5):
         task = conditions.next_task()
         assert task is not None
@@ -300,39 +260,6 @@ def test_folds_that_kill_their_worker_hold_up_no_other_motor(
     recorder.record(RECORDS[0])
     recorder.record(RECORDS[0], FAN)
     with running(repository, store, database_url, prepare_worker=die_of_the_pump):
-        wait_until(lambda: repository.backlog() == Backlog(0, 0, motors_set_aside=1), within_s=60)
+        wait_until(lambda: repository.backlog() == Backlog(0, motors_set_aside=1), within_s=60)
         assert repository.condition(FAN).as_of_ns == RECORDS[0].time_ns
     assert "the worker process died (exit code -9)" in str(repository.condition(PUMP).problem)
-
-
-def test_motors_of_a_bus_are_folded_once_all_its_recordings_are_observed(
-    repository: Repository,
-    store: RecordingStore,
-    database_url: str,
-    engine: Engine,
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    repository.sync_plant(on_one_bus())
-    recorder = Recorder(repository, store)
-    waiting = recorder.record(None)
-    recorder.record(RECORDS[0], FAN)
-    with Session(engine) as session, session.begin():
-        session.add(UnobservedRecordingRow(recording_id=waiting, motor=PUMP, recorded_ns=NOW_NS))
-    conditions = ConditionWork(repository, store, MOTORS, database_url=database_url)
-    task = conditions.next_task()
-    assert task is not None
-    assert isinstance(task.argument, ObserveTask)
-    assert conditions.next_task() is None, "each observation of the pump would have the fan folded again"
-    repository.add_observations([(waiting, RECORDS[0])])
-    observed: Future[int] = Future()
-    observed.set_result(1)
-    conditions.ended(task, observed)
-    given = [conditions.next_task() for _ in range(3)]
-    assert sorted(task.motor for task in given if task is not None) == [FAN, PUMP]
-
-    monkeypatch.setattr(work, "HELD_S", 0.0)
-    with Session(engine) as session, session.begin():
-        session.add(UnobservedRecordingRow(recording_id=waiting, motor=PUMP, recorded_ns=NOW_NS))
-    task = ConditionWork(repository, store, MOTORS, database_url=database_url).next_task()
-    assert task is not None
-    assert isinstance(task.argument, FoldTask), "new records do not wait long"

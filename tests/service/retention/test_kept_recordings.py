@@ -309,13 +309,13 @@ def test_what_an_alarm_rests_on_stays_until_it_is_over(planted: PlantedRepositor
 def test_what_notes_and_checkpoints_of_the_condition_need_stays(planted: PlantedRepository) -> None:
     motor = planted.add_motor()
     ids = planted.add(motor, [Made(24.0 * day) for day in range(10)])
-    told = {"motor": motor, "reason": "a test", "by": "a test", "made_ns": NOW_NS}
+    told = {"motor": motor, "reason": "a test", "account": "tests", "by": "a test", "made_ns": NOW_NS}
     withdrawn = {**told, "withdrawn_ns": NOW_NS, "withdrawn_by": "a test", "withdrawn_reason": "wrong"}
     at_ns = NOW_NS + DAY_NS // 2
     planted.put(
         ConditionEventRow(id=str(uuid.uuid4()), time_ns=at_ns + 3 * DAY_NS, kind=EventKind.NOTE, **told),
         ConditionEventRow(id=str(uuid.uuid4()), time_ns=at_ns + DAY_NS, kind=EventKind.REWOUND, **withdrawn),
-        ConditionCheckpointRow(motor=motor, time_ns=NOW_NS + 7 * DAY_NS, records=8, state=b""),
+        ConditionCheckpointRow(motor=motor, time_ns=NOW_NS + 7 * DAY_NS, records=8, state=b"", tracking={}),
     )
     reasons = stays(planted, settings_of(), motor)
     assert {id_: reason for id_, reason in reasons.items() if reason is not None} == {

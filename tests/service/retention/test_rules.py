@@ -6,7 +6,6 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-from alembic import command
 from sqlalchemy import Engine
 from sqlalchemy.orm import Session
 
@@ -19,7 +18,7 @@ from service.configuration.settings import Settings, SettingsError
 from service.recording_store.folder import FolderStore
 from service.retention.batches import Batches, Pace
 from service.retention.rules import rules
-from service.storage import Repository, migrate, migrations
+from service.storage import Repository
 from service.storage.records import SERVICE, Amount, Sample
 from service.storage.states import DeletedBy
 from service.timing.wall_clock import SETTLING_S
@@ -286,21 +285,6 @@ def test_the_command_makes_no_database(tmp_path: Path, capsys: pytest.CaptureFix
     (tmp_path / "statorwatch.sqlite").touch()
     assert main(["retention", "--dry-run", "--config", str(config)]) == 1
     assert "found none: start the service once" in " ".join(capsys.readouterr().err.split())
-
-
-@pytest.mark.parametrize("database_url", ["sqlite"], indirect=True)
-def test_the_command_needs_the_tables_of_its_version(
-    database_url: str, engine: Engine, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    config = tmp_path / "mcc.toml"
-    config.write_text('data_directory = "."\n')
-    with engine.begin() as connection:
-        command.downgrade(migrations.config(connection), "0012")
-    assert main(["retention", "--dry-run", "--config", str(config)]) == 1
-    told = capsys.readouterr().err
-    assert "found those of revision 0012: start the service once" in " ".join(told.split())
-    migrate(database_url)
-    assert main(["retention", "--dry-run", "--config", str(config)]) == 0
 
 
 @pytest.mark.parametrize(

@@ -1,31 +1,23 @@
-"""Measured values in partitions, on a real PostgreSQL: made ahead, filled, dropped, and of older tables."""
+"""Measured values in partitions, on a real PostgreSQL: made ahead, filled and dropped."""
 
-import multiprocessing
-import os
-import signal
 from collections import Counter
 from collections.abc import Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
-from alembic import command
 from sqlalchemy import Engine, text
 
 from core.units import NANOSECONDS_PER_DAY as DAY_NS
 from service.background.housekeeping import Housekeeping
 from service.configuration.settings import Settings
-from service.storage import Repository, connect, migrate, partitions
-from service.storage.migrations import config
+from service.storage import Repository, partitions
 from service.storage.partitions import Period
 from service.storage.records import Sample
-from testing.service.plants import SECOND_NS, two_motor_plant
+from testing.service.plants import SECOND_NS
 from testing.service.tables import differences
-from testing.waiting import wait_until
 
 pytestmark = pytest.mark.parametrize("database_url", ["postgresql"], indirect=True)
-
-QUARTER_NS = 900 * SECOND_NS
 
 
 def ns(year: int, month: int, day: int = 1, hour: int = 0) -> int:
@@ -164,84 +156,5 @@ def test_a_long_reader_delays_nobody_else(engine: Engine, repository: Repository
     assert repository.drop_measurement_partitions(900, before_ns=ns(2026, 2)) == ("measurements_900_2026_01",)
 
 
-def older(engine: Engine, *values: tuple[int, int]) -> None:
-    """Put the tables back to those without partitions, with values of these steps and times."""
-    with engine.begin() as connection:
-        command.downgrade(config(connection), "0050")
-        for step_s, time_ns in values:
-            connection.execute(
-                text(
-                    "INSERT INTO measurements (motor, step_s, time_ns, samples)"
-                    " VALUES ('PUMP-A1', :step, :time, 1)"
-                ),
-                {"step": step_s, "time": time_ns},
-            )
-
-
-def test_what_was_there_before_is_one_partition(
-    database_url: str, engine: Engine, repository: Repository
-) -> None:
-    ahead_ns = ns(2090, 1, 1)
-    older(engine, (900, ns(2016, 5)), (60, NOON_NS), (0, NOON_NS), (0, ahead_ns))
-    migrate(database_url)
-    assert places(engine) == {"measurements_before": 3, "measurements_default": 1}
-    with engine.connect() as connection:
-        assert differences(connection) == []
-    assert times(repository) == [NOON_NS, ahead_ns]
-    repository.make_measurement_partitions(now_ns=ns(2089, 12, 31))
-    sample(engine, repository, ns(2089, 12, 31), NOON_NS)
-    assert places(engine) == {
-        "measurements_before": 3,
-        "measurements_0_2089_12_31": 1,
-        "measurements_0_2090_01_01": 1,
-    }
-    # It ends when nothing is in it, and older times have a place then too.
-    for step_s in (0, 60, 900):
-        assert repository.forget_measurements(step_s, 100, before_ns=ns(2027, 1)).rows == 1
-        repository.drop_measurement_partitions(step_s, before_ns=ns(2027, 1))
-    assert "measurements_before" not in names(engine)
-    sample(engine, repository, NOON_NS)
-    assert places(engine)["measurements_default"] == 1
-    with engine.begin() as connection:
-        command.downgrade(config(connection), "0050")
-    assert places(engine) == {"measurements": 3}
-    migrate(database_url)
-
-
-def test_a_migration_that_is_killed_has_changed_nothing(
-    database_url: str, engine: Engine, repository: Repository
-) -> None:
-    """Killed after the table got its other name, while it waits for the table of the motors."""
-    values = [(900, ns(2026, 1) + number * QUARTER_NS) for number in range(500)]
-    older(engine, *values)
-    context = multiprocessing.get_context("spawn")
-    with engine.begin() as other:
-        other.execute(text("LOCK TABLE motors IN ROW EXCLUSIVE MODE"))
-        migration = context.Process(target=migrate, args=(database_url,))
-        migration.start()
-        waiting = text("SELECT count(*) FROM pg_locks WHERE NOT granted AND relation = 'motors'::regclass")
-
-        def waits() -> bool:
-            with engine.connect() as connection:
-                return bool(connection.scalar(waiting))
-
-        wait_until(waits, "the migration to wait for the motors")
-        assert migration.pid is not None
-        os.kill(migration.pid, signal.SIGKILL)
-        migration.join()
-    with engine.connect() as connection:
-        assert connection.scalar(text("SELECT version_num FROM alembic_version")) == "0050"
-    assert places(engine) == {"measurements": 500}
-    migrate(database_url)
-    assert places(engine) == {"measurements_before": 500}
-    assert times(repository, 900) == [time_ns for _, time_ns in values]
-
-
-def test_an_empty_database_has_no_table_of_the_time_before(database_url: str) -> None:
-    engine = connect(database_url)
-    assert names(engine) == {"measurements_since", "measurements_default"}
-    older(engine)
-    migrate(database_url)
-    assert names(engine) == {"measurements_since", "measurements_default"}
-    Repository(engine).sync_plant(two_motor_plant())
-    engine.dispose()
+def test_an_empty_database_has_the_default_partition_alone(engine: Engine) -> None:
+    assert names(engine) == {"measurements_default"}

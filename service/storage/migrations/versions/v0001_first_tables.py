@@ -1,236 +1,112 @@
-"""First tables."""
+"""The first tables, with what keeps the audit trail as it is, and the rows that are there from the start.
 
-import sqlalchemy as sa
+Until the first release they are those of the models, and the revision is made of them: a database with other
+tables is one of another version.
+"""
+
+from collections.abc import Iterator
+from hashlib import sha256
+
 from alembic import op
+from sqlalchemy import Index, insert
+from sqlalchemy.dialects import postgresql
+from sqlalchemy.schema import CreateIndex, CreateTable
 
-revision = "0001"
+from service.storage.models import (
+    AuditForwardingRow,
+    AuditHeadRow,
+    Base,
+    JobRow,
+    RecordingRequestRow,
+    RecordingRow,
+    StateCountRow,
+)
+from service.storage.partitions import DEFAULT, TABLE
+from service.storage.states import JobState, RecordingRequestState, RecordingState
+
+REFUSE_ON_SQLITE = """
+CREATE TRIGGER audit_entries_{event} BEFORE {event} ON audit_entries {condition}
+BEGIN SELECT RAISE(ABORT, 'an entry of the audit trail is never changed or deleted'); END
+"""
+# INSERT OR REPLACE deletes the row that is there without asking the trigger for deletions.
+REPLACES = "WHEN EXISTS (SELECT 1 FROM audit_entries WHERE number = NEW.number)"
+HEAD_ON_SQLITE = """
+CREATE TRIGGER audit_head_{event} BEFORE {event} ON audit_head {condition}
+BEGIN SELECT RAISE(ABORT, 'the head of the audit trail only goes on'); END
+"""
+ON_SQLITE = (
+    REFUSE_ON_SQLITE.format(event="update", condition=""),
+    REFUSE_ON_SQLITE.format(event="delete", condition=""),
+    REFUSE_ON_SQLITE.format(event="insert", condition=REPLACES),
+    HEAD_ON_SQLITE.format(event="update", condition="WHEN NEW.number <= OLD.number OR NEW.id <> OLD.id"),
+    HEAD_ON_SQLITE.format(event="delete", condition=""),
+    HEAD_ON_SQLITE.format(event="insert", condition="WHEN EXISTS (SELECT 1 FROM audit_head)"),
+)
+
+ON_POSTGRESQL = (
+    f"CREATE TABLE {DEFAULT} PARTITION OF {TABLE} DEFAULT",
+    """
+    CREATE FUNCTION audit_entries_stay() RETURNS trigger LANGUAGE plpgsql AS
+    $$ BEGIN RAISE EXCEPTION 'an entry of the audit trail is never changed or deleted'; END $$
+    """,
+    """
+    CREATE FUNCTION audit_head_goes_on() RETURNS trigger LANGUAGE plpgsql AS
+    $$ BEGIN
+        IF TG_OP = 'UPDATE' AND NEW.number > OLD.number THEN RETURN NEW; END IF;
+        RAISE EXCEPTION 'the head of the audit trail only goes on';
+    END $$
+    """,
+    "CREATE TRIGGER audit_entries_stay BEFORE UPDATE OR DELETE OR TRUNCATE ON audit_entries "
+    "FOR EACH STATEMENT EXECUTE FUNCTION audit_entries_stay()",
+    "CREATE TRIGGER audit_head_goes_on BEFORE UPDATE OR DELETE ON audit_head "
+    "FOR EACH ROW EXECUTE FUNCTION audit_head_goes_on()",
+    "CREATE TRIGGER audit_head_stays BEFORE TRUNCATE ON audit_head "
+    "FOR EACH STATEMENT EXECUTE FUNCTION audit_head_goes_on()",
+)
+
+STATES = {RecordingRow: RecordingState, RecordingRequestRow: RecordingRequestState, JobRow: JobState}
+
+ROWS = {
+    StateCountRow: [
+        {"counted_table": table.__tablename__, "state": state.value, "number": 0}
+        for table, states in STATES.items()
+        for state in states
+    ],
+    AuditHeadRow: [{"id": 1, "number": 0, "hash": "0" * 64}],
+    AuditForwardingRow: [{"id": 1, "number": 0}],
+}
+
+
+def _is_partial(index: Index) -> bool:
+    return index.dialect_options["sqlite"]["where"] is not None
+
+
+def _tables() -> Iterator[CreateTable | CreateIndex]:
+    """Yield all tables, each with its indexes: of two that serve, SQLite takes the last, the partial one."""
+    for table in Base.metadata.sorted_tables:
+        yield CreateTable(table)
+        yield from map(CreateIndex, sorted(table.indexes, key=lambda one: (_is_partial(one), str(one.name))))
+
+
+def _statements() -> Iterator[str]:
+    """Yield all that is made, as text: for PostgreSQL, where it says the most."""
+    dialect = postgresql.dialect()  # type: ignore[no-untyped-call]  # SQLAlchemy has no types here
+    yield from (str(one.compile(dialect=dialect)) for one in _tables())
+    yield from (*ON_SQLITE, *ON_POSTGRESQL)
+    yield repr(list(ROWS.values()))
+
+
+revision = "0001_" + sha256("\n".join(_statements()).encode()).hexdigest()[:12]
 down_revision = None
 branch_labels = None
 depends_on = None
 
 
 def upgrade() -> None:
-    op.create_table(
-        "sites",
-        sa.Column("name", sa.String(), nullable=False),
-        sa.Column("description", sa.String(), nullable=False),
-        sa.Column("in_service", sa.Boolean(), nullable=False),
-        sa.PrimaryKeyConstraint("name", name=op.f("pk_sites")),
-    )
-    op.create_table(
-        "ieds",
-        sa.Column("name", sa.String(), nullable=False),
-        sa.Column("site", sa.String(), nullable=False),
-        sa.Column("host", sa.String(), nullable=False),
-        sa.Column("port", sa.BigInteger(), nullable=False),
-        sa.Column("manufacturer", sa.String(), nullable=False),
-        sa.Column("type", sa.String(), nullable=False),
-        sa.Column("in_service", sa.Boolean(), nullable=False),
-        sa.Column(
-            "link_state",
-            sa.String(length=16),
-            nullable=False,
-        ),
-        sa.Column("link_reason", sa.String(), nullable=True),
-        sa.Column("link_changed_ns", sa.BigInteger(), nullable=True),
-        sa.Column("last_success_ns", sa.BigInteger(), nullable=True),
-        sa.Column("entry_id", sa.LargeBinary(), nullable=True),
-        sa.ForeignKeyConstraint(["site"], ["sites.name"], name=op.f("fk_ieds_site_sites")),
-        sa.PrimaryKeyConstraint("name", name=op.f("pk_ieds")),
-    )
-    op.create_table(
-        "motors",
-        sa.Column("name", sa.String(), nullable=False),
-        sa.Column("description", sa.String(), nullable=False),
-        sa.Column("site", sa.String(), nullable=False),
-        sa.Column("ied", sa.String(), nullable=False),
-        sa.Column("in_service", sa.Boolean(), nullable=False),
-        sa.ForeignKeyConstraint(["ied"], ["ieds.name"], name=op.f("fk_motors_ied_ieds")),
-        sa.ForeignKeyConstraint(["site"], ["sites.name"], name=op.f("fk_motors_site_sites")),
-        sa.PrimaryKeyConstraint("name", name=op.f("pk_motors")),
-    )
-    op.create_index(op.f("ix_motors_ied"), "motors", ["ied"], unique=False)
-
-    op.create_table(
-        "recordings",
-        sa.Column("id", sa.String(length=36), nullable=False),
-        sa.Column("motor", sa.String(), nullable=False),
-        sa.Column("ied", sa.String(), nullable=True),
-        sa.Column(
-            "source",
-            sa.String(length=16),
-            nullable=False,
-        ),
-        sa.Column("name", sa.String(), nullable=False),
-        sa.Column("digest", sa.String(length=64), nullable=True),
-        sa.Column("size_bytes", sa.BigInteger(), nullable=False),
-        sa.Column("remote_modified_ns", sa.BigInteger(), nullable=True),
-        sa.Column(
-            "state",
-            sa.String(length=16),
-            nullable=False,
-        ),
-        sa.Column("reason", sa.String(), nullable=True),
-        sa.Column("attempts", sa.BigInteger(), nullable=False),
-        sa.Column("announced_ns", sa.BigInteger(), nullable=False),
-        sa.Column("fetched_ns", sa.BigInteger(), nullable=True),
-        sa.Column("recorded_ns", sa.BigInteger(), nullable=True),
-        sa.ForeignKeyConstraint(["ied"], ["ieds.name"], name=op.f("fk_recordings_ied_ieds")),
-        sa.ForeignKeyConstraint(["motor"], ["motors.name"], name=op.f("fk_recordings_motor_motors")),
-        sa.PrimaryKeyConstraint("id", name=op.f("pk_recordings")),
-    )
-    op.create_index("ix_recordings_announced_ns_id", "recordings", ["announced_ns", "id"], unique=False)
-    op.create_index(
-        "ix_recordings_motor_announced_ns_id", "recordings", ["motor", "announced_ns", "id"], unique=False
-    )
-    op.create_index("ux_recordings_relay", "recordings", ["ied", "name", "digest"], unique=True)
-    op.create_index(
-        "ux_recordings_upload",
-        "recordings",
-        ["motor", "name", "digest"],
-        unique=True,
-        sqlite_where=sa.text("ied IS NULL"),
-        postgresql_where=sa.text("ied IS NULL"),
-    )
-
-    op.create_table(
-        "event_reports",
-        sa.Column("id", sa.String(length=36), nullable=False),
-        sa.Column("motor", sa.String(), nullable=False),
-        sa.Column("ied", sa.String(), nullable=False),
-        sa.Column(
-            "state",
-            sa.String(length=16),
-            nullable=False,
-        ),
-        sa.Column("reason", sa.String(), nullable=True),
-        sa.Column("idempotency_key", sa.String(), nullable=True),
-        sa.Column("recording_id", sa.String(length=36), nullable=True),
-        sa.Column("requested_ns", sa.BigInteger(), nullable=False),
-        sa.Column("triggered_ns", sa.BigInteger(), nullable=True),
-        sa.Column("recorded_ns", sa.BigInteger(), nullable=True),
-        sa.Column("fetched_ns", sa.BigInteger(), nullable=True),
-        sa.Column("diagnosed_ns", sa.BigInteger(), nullable=True),
-        sa.Column("failed_ns", sa.BigInteger(), nullable=True),
-        sa.ForeignKeyConstraint(["ied"], ["ieds.name"], name=op.f("fk_event_reports_ied_ieds")),
-        sa.ForeignKeyConstraint(["motor"], ["motors.name"], name=op.f("fk_event_reports_motor_motors")),
-        sa.ForeignKeyConstraint(
-            ["recording_id"], ["recordings.id"], name=op.f("fk_event_reports_recording_id_recordings")
-        ),
-        sa.PrimaryKeyConstraint("id", name=op.f("pk_event_reports")),
-    )
-    op.create_index(
-        "ix_event_reports_ied_state_requested_ns",
-        "event_reports",
-        ["ied", "state", "requested_ns"],
-        unique=False,
-    )
-    op.create_index(op.f("ix_event_reports_recording_id"), "event_reports", ["recording_id"], unique=False)
-    op.create_index("ix_event_reports_requested_ns_id", "event_reports", ["requested_ns", "id"], unique=False)
-    op.create_index("ux_event_reports_key", "event_reports", ["motor", "idempotency_key"], unique=True)
-
-    op.create_table(
-        "jobs",
-        sa.Column("id", sa.String(length=36), nullable=False),
-        sa.Column("recording_id", sa.String(length=36), nullable=False),
-        sa.Column("method", sa.String(), nullable=False),
-        sa.Column("model", sa.String(), nullable=False),
-        sa.Column(
-            "state",
-            sa.String(length=16),
-            nullable=False,
-        ),
-        sa.Column("attempts", sa.BigInteger(), nullable=False),
-        sa.Column("not_before_ns", sa.BigInteger(), nullable=False),
-        sa.Column("created_ns", sa.BigInteger(), nullable=False),
-        sa.Column("started_ns", sa.BigInteger(), nullable=True),
-        sa.Column("finished_ns", sa.BigInteger(), nullable=True),
-        sa.Column("error", sa.String(), nullable=True),
-        sa.ForeignKeyConstraint(
-            ["recording_id"], ["recordings.id"], name=op.f("fk_jobs_recording_id_recordings")
-        ),
-        sa.PrimaryKeyConstraint("id", name=op.f("pk_jobs")),
-    )
-    op.create_index(
-        "ix_jobs_recording_id_created_ns_id", "jobs", ["recording_id", "created_ns", "id"], unique=False
-    )
-    op.create_index("ix_jobs_state_not_before_ns", "jobs", ["state", "not_before_ns"], unique=False)
-
-    op.create_table(
-        "recording_files",
-        sa.Column("recording_id", sa.String(length=36), nullable=False),
-        sa.Column("name", sa.String(), nullable=False),
-        sa.Column("size_bytes", sa.BigInteger(), nullable=False),
-        sa.Column("sha256", sa.String(length=64), nullable=False),
-        sa.ForeignKeyConstraint(
-            ["recording_id"], ["recordings.id"], name=op.f("fk_recording_files_recording_id_recordings")
-        ),
-        sa.PrimaryKeyConstraint("recording_id", "name", name=op.f("pk_recording_files")),
-    )
-    op.create_table(
-        "remote_records",
-        sa.Column("ied", sa.String(), nullable=False),
-        sa.Column("name", sa.String(), nullable=False),
-        sa.Column("size_bytes", sa.BigInteger(), nullable=False),
-        sa.Column("modified_ns", sa.BigInteger(), nullable=False),
-        sa.Column("recording_id", sa.String(length=36), nullable=False),
-        sa.ForeignKeyConstraint(["ied"], ["ieds.name"], name=op.f("fk_remote_records_ied_ieds")),
-        sa.ForeignKeyConstraint(
-            ["recording_id"], ["recordings.id"], name=op.f("fk_remote_records_recording_id_recordings")
-        ),
-        sa.PrimaryKeyConstraint("ied", "name", "size_bytes", "modified_ns", name=op.f("pk_remote_records")),
-    )
-    op.create_index(op.f("ix_remote_records_recording_id"), "remote_records", ["recording_id"], unique=False)
-
-    op.create_table(
-        "diagnoses",
-        sa.Column("id", sa.String(length=36), nullable=False),
-        sa.Column("job_id", sa.String(length=36), nullable=False),
-        sa.Column("recording_id", sa.String(length=36), nullable=False),
-        sa.Column("motor", sa.String(), nullable=False),
-        sa.Column("current", sa.Boolean(), nullable=False),
-        sa.Column("created_ns", sa.BigInteger(), nullable=False),
-        sa.Column("recorded_ns", sa.BigInteger(), nullable=False),
-        sa.Column(
-            "verdict",
-            sa.String(length=16),
-            nullable=False,
-        ),
-        sa.Column("mu_f", sa.Double(), nullable=True),
-        sa.Column("mu_f_ci95_low", sa.Double(), nullable=True),
-        sa.Column("mu_f_ci95_high", sa.Double(), nullable=True),
-        sa.Column("theta_f", sa.BigInteger(), nullable=True),
-        sa.Column("load_level", sa.Double(), nullable=True),
-        sa.Column("method", sa.String(), nullable=False),
-        sa.Column("model", sa.String(), nullable=False),
-        sa.Column("document", sa.JSON(), nullable=False),
-        sa.ForeignKeyConstraint(["job_id"], ["jobs.id"], name=op.f("fk_diagnoses_job_id_jobs")),
-        sa.ForeignKeyConstraint(["motor"], ["motors.name"], name=op.f("fk_diagnoses_motor_motors")),
-        sa.ForeignKeyConstraint(
-            ["recording_id"], ["recordings.id"], name=op.f("fk_diagnoses_recording_id_recordings")
-        ),
-        sa.PrimaryKeyConstraint("id", name=op.f("pk_diagnoses")),
-        sa.UniqueConstraint("job_id", name=op.f("uq_diagnoses_job_id")),
-    )
-    op.create_index(
-        "ix_diagnoses_motor_current_recorded_ns_id",
-        "diagnoses",
-        ["motor", "current", "recorded_ns", "id"],
-        unique=False,
-    )
-    op.create_index(op.f("ix_diagnoses_recording_id"), "diagnoses", ["recording_id"], unique=False)
-
-
-def downgrade() -> None:
-    for table in (
-        "diagnoses",
-        "remote_records",
-        "recording_files",
-        "jobs",
-        "event_reports",
-        "recordings",
-        "motors",
-        "ieds",
-        "sites",
-    ):
-        op.drop_table(table)
+    connection = op.get_bind()
+    for element in _tables():
+        connection.execute(element)
+    for statement in ON_SQLITE if connection.dialect.name == "sqlite" else ON_POSTGRESQL:
+        connection.exec_driver_sql(statement)
+    for table, rows in ROWS.items():
+        connection.execute(insert(table), rows)

@@ -28,9 +28,8 @@ from service.storage.records import ConditionEntry
 from service.storage.repository.alarms.drift import settle_drift_alarm
 from service.storage.repository.alarms.parts import settle_part_alarms
 from service.storage.repository.alarms.starts import NotableStarts, notable_starts
-from service.storage.repository.conditions.conditions import conditions_of
+from service.storage.repository.history.record_figures import latest_figures
 from service.storage.repository.history.rotor_course import course_condition, latest_time_ns
-from service.storage.repository.history.supply import latest_figures
 from service.storage.repository.sessions import Sessions, found, record_of
 
 
@@ -47,13 +46,6 @@ class MotorConditionRows(Sessions):
         """Make a motor's condition, and alarms, say what is kept of its parts. Raises NotFoundError."""
         with self._write() as session:
             settle_beside_fold(session, motor, now_ns=now_ns)
-
-    def settle_motor_conditions(self, *, now_ns: int) -> None:
-        """Put the conditions together that say nothing of parts, as a service does when it starts."""
-        with self._read() as session:
-            motors = [one.motor for one in conditions_of(session).values() if not one.parts]
-        for motor in motors:
-            self.settle_motor_condition(motor, now_ns=now_ns)
 
     def motor_answer(self, motor: str) -> MotorAnswer:
         """Return the causes of all that is known of a motor. Raises NotFoundError."""

@@ -5,7 +5,7 @@ from dataclasses import fields
 from math import isfinite
 from typing import Any
 
-from sqlalchemy import Select, delete, exists, func, select
+from sqlalchemy import Select, func, select
 from sqlalchemy.orm import Session
 
 from core.condition.copies import SAME_TIME_NS, is_copy
@@ -17,7 +17,6 @@ from service.storage.models import (
     MotorRow,
     ObservationRow,
     RecordingRow,
-    UnobservedRecordingRow,
 )
 from service.storage.records import (
     Backlog,
@@ -25,7 +24,6 @@ from service.storage.records import (
     Cursor,
     Page,
     RecordObservation,
-    ToObserve,
 )
 from service.storage.repository.conditions.fold_marks import mark_with_bus, resume
 from service.storage.repository.sessions import Order, Sessions, columns_of, found, latest_of, page_of, within
@@ -101,58 +99,6 @@ class ObservationRows(Sessions):
         with self._read() as session:
             return latest_of(session, _folded(motor), _ORDER, point, limit=limit)
 
-    def motors_to_observe(self) -> tuple[str, ...]:
-        """Return the motors that have recordings from before there were observations."""
-        with self._read() as session:
-            # One look into the index for each motor, however many recordings there are.
-            of_motor = exists().where(UnobservedRecordingRow.motor == MotorRow.name)
-            return tuple(session.scalars(select(MotorRow.name).where(of_motor).order_by(MotorRow.name)))
-
-    def motors_awaiting_observations(self) -> frozenset[str]:
-        """Return the motors that have recordings to observe, and the others of their buses."""
-        with self._read() as session:
-            of_motor = exists().where(UnobservedRecordingRow.motor == MotorRow.name)
-            waiting = session.execute(select(MotorRow.name, MotorRow.bus).where(of_motor)).all()
-            buses = {bus for _, bus in waiting if bus is not None}
-            beside = session.scalars(select(MotorRow.name).where(MotorRow.bus.in_(buses)))
-            return frozenset(name for name, _ in waiting) | frozenset(beside)
-
-    def recordings_to_observe(self, motor: str, limit: int) -> tuple[ToObserve, ...]:
-        """Return some of a motor's recordings that are yet to be observed, oldest first."""
-        query = (
-            select(
-                RecordingRow.id,
-                RecordingRow.motor,
-                RecordingRow.digest,
-                UnobservedRecordingRow.recorded_ns,
-            )
-            .join(UnobservedRecordingRow, UnobservedRecordingRow.recording_id == RecordingRow.id)
-            .where(UnobservedRecordingRow.motor == motor)
-            .order_by(UnobservedRecordingRow.recorded_ns, UnobservedRecordingRow.recording_id)
-            .limit(limit)
-        )
-        with self._read() as session:
-            return tuple(
-                ToObserve(recording_id, motor, digest, recorded_ns)
-                for recording_id, motor, digest, recorded_ns in session.execute(query)
-                if digest is not None
-            )
-
-    def add_observations(self, observed: Sequence[tuple[str, Observation | None]]) -> int:
-        """Keep what recordings that were to be observed tell, by their ids; return how many it were.
-
-        None: the recording tells nothing. One that was observed, diagnosed again or deleted meanwhile is
-        left as it is. Raises UnstorableDiagnosisError.
-        """
-        number = 0
-        with self._write() as session:
-            for recording_id, observation in observed:
-                row = session.get(UnobservedRecordingRow, recording_id, with_for_update=True)
-                if row is not None:
-                    keep_observation(session, recording_id, row.motor, observation)
-                    number += 1
-        return number
-
     def leave_out(self, recording_id: str, reason: str, program: str) -> None:
         """Have a motor's condition follow without one of its recordings, which is kept with the reason.
 
@@ -172,7 +118,6 @@ class ObservationRows(Sessions):
     def backlog(self) -> Backlog:
         """Return how much the conditions are behind the recordings; of motors in service."""
         in_service = select(MotorRow.name).where(MotorRow.in_service)
-        unobserved = select(func.count()).select_from(UnobservedRecordingRow)
         marked = select(func.count(FoldMarkRow.motor.distinct())).where(
             FoldMarkRow.set_aside.is_(False), FoldMarkRow.motor.in_(in_service)
         )
@@ -180,7 +125,7 @@ class ObservationRows(Sessions):
             ConditionRow.problem.is_not(None), ConditionRow.motor.in_(in_service)
         )
         with self._read() as session:
-            return Backlog(*(session.scalar(query) or 0 for query in (unobserved, marked, problems)))
+            return Backlog(*(session.scalar(query) or 0 for query in (marked, problems)))
 
 
 def copied(session: Session, recording_id: str, motor: str, observation: Observation) -> str | None:
@@ -213,7 +158,7 @@ def keep_observation(
 
     is_first: it was never diagnosed before, so it told nothing. Raises UnstorableDiagnosisError.
     """
-    before = None if is_first else _told_before(session, recording_id)
+    before = None if is_first else session.get(ObservationRow, recording_id)
     row = None if observation is None else observation_row(recording_id, motor, observation)
     if before is not None:
         if row is not None and _of_row(before) == _of_row(row):
@@ -228,12 +173,6 @@ def keep_observation(
         mark_with_bus(session, motor, row.time_ns)
 
 
-def _told_before(session: Session, recording_id: str) -> ObservationRow | None:
-    """Return what a recording told before, which from now on need not be found out."""
-    session.execute(delete(UnobservedRecordingRow).where(UnobservedRecordingRow.recording_id == recording_id))
-    return session.get(ObservationRow, recording_id)
-
-
 def take_in_again(session: Session, row: ObservationRow) -> None:
     """Have a record folded that was left out."""
     row.left_out, row.left_out_by = None, None
@@ -245,7 +184,6 @@ def take_in_again(session: Session, row: ObservationRow) -> None:
 
 def forget_observation(session: Session, recording_id: str) -> None:
     """Delete what a recording told, as if it had never been, and have its motor folded without it."""
-    session.execute(delete(UnobservedRecordingRow).where(UnobservedRecordingRow.recording_id == recording_id))
     row = session.get(ObservationRow, recording_id)
     if row is not None:
         mark_with_bus(session, row.motor, row.time_ns)

@@ -170,7 +170,8 @@ def judged_again(session: Session, motor: str) -> Iterator[list[Place]]:
     yield places
     session.flush()
     after = _baselines(session, motor)
-    if any(old.level_dB not in (None, after[load_bin].level_dB) for load_bin, old in before.items()):
+    # The level may stay while other records make it: one that does so no more is compared from now on.
+    if any(old.level_dB is not None and old != after[load_bin] for load_bin, old in before.items()):
         _judge_all(session, motor, after)
         return
     for place in places:

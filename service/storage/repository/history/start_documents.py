@@ -73,7 +73,7 @@ def start_figures(figures: Mapping[str, Any], curve: Mapping[str, Any]) -> Motor
 
 
 def examined_start(figures: MotorStart, document: Mapping[str, Any] | None) -> ExaminedStart:
-    """Return a start with what its model tells; starts of earlier versions have figures alone."""
+    """Return a start with what its model tells; without that document, with its figures alone."""
     if document is None:
         return ExaminedStart(figures)
     torque, parameters, sideband, stress = (

@@ -5,15 +5,14 @@ from itertools import groupby
 from math import isfinite
 from operator import attrgetter
 
-from sqlalchemy import delete, exists, func, select
+from sqlalchemy import delete, select
 from sqlalchemy.orm import Session
 
-from core.operation import Operation
 from core.starts.examined import ExaminedStart
 from core.starts.figures import MotorStart
 from core.starts.stress import HOUR_NS, starts_within_hour
 from service.storage.errors import NotFoundError
-from service.storage.models import MotorRow, RecordingRow, StartRow
+from service.storage.models import MotorRow, StartRow
 from service.storage.records import Cursor, Page, StartEntry
 from service.storage.repository.conditions.tracking import follow_again, followed_start
 from service.storage.repository.history.start_documents import FIGURES, start_entry, start_row
@@ -64,17 +63,6 @@ class StartRows(Sessions):
             known = self.times_of_starts(motor, from_ns=min(times) - HOUR_NS, to_ns=max(times))
             counts |= {one.recording_id: starts_within_hour(known, one.time_ns) for one in together}
         return counts
-
-    def unmeasured_starts(self, motor: str | None = None) -> int:
-        """Return how many stored recordings of starts have no figures: those of earlier versions."""
-        query = select(func.count()).where(
-            RecordingRow.operation == Operation.START,
-            ~exists().where(StartRow.recording_id == RecordingRow.id),
-        )
-        if motor is not None:
-            query = query.where(RecordingRow.motor == motor)
-        with self._read() as session:
-            return session.scalar(query) or 0
 
 
 def keep_start(

@@ -36,10 +36,9 @@ from service.storage.records.actors import SERVICE, Actor
 from service.storage.repository.audit.entries import note_change
 from service.storage.repository.conditions.conditions import note_standstill
 from service.storage.repository.conditions.observations import copied, keep_observation
+from service.storage.repository.history.record_figures import keep_record_figures
 from service.storage.repository.history.rotor import keep_rotor_finding
 from service.storage.repository.history.starts import keep_start
-from service.storage.repository.history.supply import keep_supply
-from service.storage.repository.history.swings import keep_swings
 from service.storage.repository.jobs.locks import lock_motor_of
 from service.storage.repository.jobs.steps import end_job, give_up_job, is_held, release, retry_or_give_up
 from service.storage.repository.recordings.baselines import baseline_rows
@@ -233,9 +232,13 @@ class JobRows(Sessions):
             counts = left_out is None
             tells_of_rotor = counts and diagnosis.verdict is not Verdict.UNDIAGNOSABLE
             keep_rotor_finding(*shown, rotor if tells_of_rotor else None, is_first=is_first)
-            swings = (eccentricity, pulsation) if tells_of_rotor else (None, None)
-            keep_swings(*shown, *swings, is_first=is_first)
-            keep_supply(*shown, supply if counts else None, is_first=is_first)
+            keep_record_figures(
+                *shown,
+                eccentricity=eccentricity if tells_of_rotor else None,
+                pulsation=pulsation if tells_of_rotor else None,
+                supply=supply if counts else None,
+                is_first=is_first,
+            )
             if diagnosis.operation in AT_REST:
                 note_standstill(session, recording.motor, min(recorded_ns, now_ns))
             return True

@@ -21,7 +21,6 @@ from service.storage.models import (
     MotorRow,
     ObservationRow,
     RecordingRow,
-    UnobservedRecordingRow,
 )
 from service.storage.records import BaselineDoubt, BaselineEntry, RecordingEntry
 from service.storage.records.actors import Actor
@@ -209,8 +208,7 @@ def _doubt_of_condition(session: Session, recording_id: str) -> str | None:
     """
     observation = session.get(ObservationRow, recording_id)
     if observation is None:
-        is_to_be_observed = session.get(UnobservedRecordingRow, recording_id) is not None
-        return NOT_KNOWN_YET if is_to_be_observed else None
+        return None
     if observation.state is None:
         return NOT_KNOWN_YET
     if observation.state is State.FAULT or (

@@ -29,16 +29,14 @@ from service.storage.models import (
     RecordingRequestRow,
     RecordingRow,
     RemoteRecordRow,
-    UnobservedRecordingRow,
 )
 from service.storage.records import Cursor, Deletion, Page, RemoteRecord
 from service.storage.records.actors import SERVICE, Actor
 from service.storage.repository.audit.entries import note_change
 from service.storage.repository.conditions.observations import forget_observation
+from service.storage.repository.history.record_figures import forget_record_figures
 from service.storage.repository.history.rotor import forget_rotor_finding
 from service.storage.repository.history.starts import forget_start
-from service.storage.repository.history.supply import forget_supply
-from service.storage.repository.history.swings import forget_swings
 from service.storage.repository.recordings.folders import discard_folder, lock_folder
 from service.storage.repository.recordings.recordings import stored_before
 from service.storage.repository.recordings.requests import KIND, fail_row, fail_rows
@@ -240,13 +238,11 @@ def delete_row(
     for link in session.scalars(select(RemoteRecordRow).where(RemoteRecordRow.recording_id == row.id)):
         _remember_listing(session, link.ied, record_of(RemoteRecord, link), deletion.id)
         session.delete(link)
-    session.execute(delete(UnobservedRecordingRow).where(UnobservedRecordingRow.recording_id == row.id))
     if deleted_by is DeletedBy.PERSON:
         forget_observation(session, row.id)
         forget_start(session, row.id)
         forget_rotor_finding(session, row.id)
-        forget_supply(session, row.id)
-        forget_swings(session, row.id)
+        forget_record_figures(session, row.id)
     session.execute(delete(DiagnosisRow).where(DiagnosisRow.recording_id == row.id))
     session.execute(delete(RecordingFileRow).where(RecordingFileRow.recording_id == row.id))
     for job in session.scalars(_jobs_of(row.id)):

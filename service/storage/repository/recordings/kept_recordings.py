@@ -37,7 +37,6 @@ from service.storage.models import (
     DiagnosisRow,
     JobRow,
     RecordingRow,
-    UnobservedRecordingRow,
 )
 from service.storage.repository.motor_health import is_usable_start
 from service.storage.states import AlarmState, JobState, RecordingState, StayReason
@@ -87,7 +86,6 @@ def conditions(session: Session, motor: str, keeping: Keeping) -> Conditions:
         StayReason.RUNNING: exists().where(
             JobRow.recording_id == RecordingRow.id, JobRow.state == JobState.RUNNING
         ),
-        StayReason.UNOBSERVED: exists().where(UnobservedRecordingRow.recording_id == RecordingRow.id),
         StayReason.BASELINE: exists().where(BaselineRecordingRow.recording_id == RecordingRow.id),
         StayReason.ALARM: _of_an_open_alarm(motor),
         StayReason.NOTE: _beside_an_event(motor),

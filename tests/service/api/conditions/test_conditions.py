@@ -288,7 +288,6 @@ def test_the_metrics_have_the_conditions(client: httpx.Client, repository: Repos
         f"mcc_motor_condition_timestamp_seconds{{{motor}}} 1.76e+09",
         f"mcc_motor_condition_stale{{{motor}}} 1.0",
         'mcc_alarms{kind="condition-fault"} 1.0',
-        "mcc_recordings_to_observe 0.0",
         "mcc_motors_to_fold 1.0",
         "mcc_motors_set_aside 0.0",
     }

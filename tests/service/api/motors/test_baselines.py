@@ -7,8 +7,6 @@ from uuid import uuid4
 
 import httpx
 import pytest
-from sqlalchemy import Engine
-from sqlalchemy.orm import Session
 
 from core.condition.kinds import Kind, State
 from core.condition.observation import Observation
@@ -17,7 +15,6 @@ from core.diagnosis.stator import diagnose, learn_baseline
 from core.diagnosis.verdict import Diagnosis, Verdict
 from service.recording_store.folder import FolderStore
 from service.storage import Repository
-from service.storage.models import UnobservedRecordingRow
 from service.storage.records import ConditionPoint, FoldResult
 from testing.machines.motors import REFERENCE
 from testing.machines.phase_circuits import Fault, recording, running
@@ -246,19 +243,6 @@ def test_a_recording_that_the_condition_does_not_follow_yet_is_in_doubt(
     assert client.get(BASELINE).json() == NO_BASELINE
     fold(repository, ids[0], State.HEALTHY, Kind.NONE)
     assert client.put(BASELINE, json=wanted).status_code == 200
-
-
-def test_a_recording_that_is_yet_to_be_observed_is_in_doubt(
-    client: httpx.Client, plant: Plant, repository: Repository, engine: Engine
-) -> None:
-    ids = [plant.recording(healthy()) for _ in range(3)]
-    with Session(engine) as session, session.begin():
-        session.add(UnobservedRecordingRow(recording_id=ids[1], motor="PUMP-A1", recorded_ns=NOW_NS))
-    refused = client.put(BASELINE, json={"recording_ids": ids})
-    assert refused.status_code == 409
-    assert [each["location"] for each in refused.json()["errors"]] == [f"body.recording_ids.{ids[1]}"]
-    repository.add_observations([(ids[1], None)])
-    assert client.put(BASELINE, json={"recording_ids": ids}).status_code == 200
 
 
 @pytest.mark.parametrize("method", ["GET", "PUT", "DELETE"])

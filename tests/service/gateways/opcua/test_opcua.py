@@ -71,8 +71,9 @@ def test_the_state_of_a_machine_follows_its_relay_and_its_records(
 
     def told() -> tuple[str, int] | int:
         state, node_id = (value(settings, one) for one in (path, f"{path}/Id"))
-        if state.StatusCode.value != ua.StatusCodes.Good:
-            return int(state.StatusCode.value)
+        for one in (state, node_id):  # the state may change between the two
+            if one.StatusCode.value != ua.StatusCodes.Good:
+                return int(one.StatusCode.value)
         return state.Value.Value.Text, node_id.Value.Value.Identifier
 
     assert told() == ua.StatusCodes.BadNoCommunication

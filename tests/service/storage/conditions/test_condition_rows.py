@@ -5,7 +5,6 @@ from math import nan
 
 import pytest
 from sqlalchemy import Engine
-from sqlalchemy.orm import Session
 
 from core.condition.events import Event, EventKind
 from core.condition.kinds import Kind, State
@@ -14,7 +13,6 @@ from service.plant import Bus, Plant
 from service.recording_store.store import RecordingStore
 from service.storage import NotFoundError, Repository
 from service.storage.errors import UnstorableDiagnosisError
-from service.storage.models import UnobservedRecordingRow
 from service.storage.records import (
     SERVICE,
     Checkpoint,
@@ -58,7 +56,7 @@ def nothing_more(fold: FoldInput) -> FoldResult:
     ]
     records = 0 if fold.checkpoint is None else fold.checkpoint.records
     checkpoints = [
-        Checkpoint(point.time_ns, records + number, f"up to {point.time_ns}".encode())
+        Checkpoint(point.time_ns, records + number, f"up to {point.time_ns}".encode(), {})
         for number, point in enumerate(points, start=1)
     ]
     if fold.events and checkpoints:  # the last one is of all that was folded
@@ -155,7 +153,9 @@ def test_a_fold_goes_on_from_the_last_checkpoint_before_what_changed(
 
     recorder.record(observation(4))
     fold = began(repository)
-    assert fold.checkpoint == Checkpoint(NOW_NS + 3 * HOUR_NS, 4, f"up to {NOW_NS + 3 * HOUR_NS}".encode())
+    assert fold.checkpoint == Checkpoint(
+        NOW_NS + 3 * HOUR_NS, 4, f"up to {NOW_NS + 3 * HOUR_NS}".encode(), {}
+    )
     assert [one.observation.time_ns for one in fold.observations] == [NOW_NS + 4 * HOUR_NS]
     repository.finish_fold(fold, nothing_more(fold), now_ns=NOW_NS)
 
@@ -262,46 +262,6 @@ def test_a_rule_of_retention_leaves_what_a_recording_told(repository: Repository
     assert repository.observation(deleted) is None
     assert len(began(repository).observations) == 0
     assert [point.recording_id for point in repository.condition_trend(PUMP, limit=10).items] == [kept]
-
-
-def test_recordings_from_before_are_observed_once(
-    repository: Repository, recorder: Recorder, engine: Engine
-) -> None:
-    ids = [recorder.record(None) for _ in range(3)]
-    with Session(engine) as session, session.begin():
-        session.add_all(
-            UnobservedRecordingRow(recording_id=id_, motor=PUMP, recorded_ns=NOW_NS - number)
-            for number, id_ in enumerate(ids)
-        )
-    assert repository.backlog().unobserved_recordings == 3
-    assert repository.motors_to_observe() == (PUMP,)
-    oldest = repository.recordings_to_observe(PUMP, 2)
-    assert [one.recording_id for one in oldest] == [ids[2], ids[1]]
-    assert repository.add_observations([(ids[2], observation(2)), (ids[1], None)]) == 2
-    assert repository.add_observations([(ids[2], observation(3))]) == 0, "another was quicker"
-    recorder.diagnose_again(ids[0], observation(0))
-    assert repository.backlog().unobserved_recordings == 0
-    assert repository.backlog().motors_to_fold == 1
-    assert repository.motors_to_observe() == ()
-    assert len(began(repository).observations) == 2
-
-
-def test_recordings_of_a_motor_that_left_the_plant_are_not_waited_for(
-    repository: Repository, recorder: Recorder, engine: Engine
-) -> None:
-    ids = {name: recorder.record(None, name) for name in (PUMP, FAN)}
-    with Session(engine) as session, session.begin():
-        session.add_all(
-            UnobservedRecordingRow(recording_id=id_, motor=name, recorded_ns=NOW_NS)
-            for name, id_ in ids.items()
-        )
-    plant = on_one_bus()
-    repository.sync_plant(plant)
-    assert repository.motors_to_observe() == (FAN, PUMP)
-    repository.sync_plant(replace(plant, motors=plant.motors[:1]))
-    (left,) = plant.motors[:1]
-    assert repository.motors_to_observe() == (left.name,)
-    assert repository.motors_awaiting_observations() == {PUMP, FAN}, "both on one bus"
 
 
 def test_motors_of_a_bus_that_another_joins_are_folded_anew(

@@ -3,12 +3,10 @@
 from dataclasses import replace
 
 import pytest
-from sqlalchemy import Engine, text
 
 from core.units import NANOSECONDS_PER_DAY
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
-from service.storage.migrations.versions.v0040_condition_days import FILL
 from service.storage.records import ConditionDay, FoldInput, FoldResult
 from service.storage.states import DeletedBy
 from testing.service.following import PUMP, Recorder
@@ -84,17 +82,3 @@ def test_a_deleted_record_leaves_its_day(repository: Repository, recorder: Recor
     fold = began(repository)
     repository.finish_fold(fold, nothing_more(fold), now_ns=NOW_NS)
     assert [day.day_ns for day in days(repository)] == [TODAY_NS]
-
-
-def test_an_older_database_gets_the_days_of_all_its_records(
-    repository: Repository, recorder: Recorder, engine: Engine
-) -> None:
-    for hour in (0, 1, 24):
-        recorder.record(observation(hour))
-    fold = began(repository)
-    repository.finish_fold(fold, told(fold, 0.25, 0.75, 0.002), now_ns=NOW_NS)
-    kept = days(repository)
-    with engine.begin() as connection:
-        connection.execute(text("DELETE FROM condition_days"))
-        connection.execute(text(FILL))
-    assert days(repository) == kept

@@ -6,14 +6,11 @@ from random import Random
 from statistics import median
 
 import pytest
-from alembic import command
-from sqlalchemy import Engine, text
 
 from core.rotor.finding import RotorFinding, RotorState
 from core.rotor.trend import condition_of_findings
 from service.recording_store.store import RecordingStore
-from service.storage import Repository, migrate
-from service.storage.migrations import config
+from service.storage import Repository
 from service.storage.records import Actor
 from testing.service.plants import NOW_NS, SECOND_NS
 from testing.service.rotor_and_supply import BROKEN_ROTOR, SHORT_RECORD, SOUND_ROTOR, ExaminedRecordings
@@ -84,25 +81,17 @@ def test_a_joined_recording_stands_for_its_parts(recorded: ExaminedRecordings) -
     assert repository.rotor_condition(MOTOR).bins[0].records == 3
 
 
-def test_records_of_an_older_version_are_judged_as_they_came(
-    recorded: ExaminedRecordings, database_url: str, engine: Engine
-) -> None:
-    """Before 0046 no condition was kept with a record, and parts counted beside what they were joined to."""
-    parts = [recorded.add(BROKEN_ROTOR) for _ in range(2)]
-    recorded.join(parts, SOUND_ROTOR)
-    for severity_dB in (-49.0, -48.0, -49.0, -44.0, -30.0, -43.0, -44.0):
-        state = RotorState.FAULT if severity_dB > -36.0 else RotorState.HEALTHY
-        recorded.add(replace(_sound(severity_dB), state=state))
-    recorded.add(SHORT_RECORD)
-    stored = text("SELECT recording_id, condition FROM rotor_findings ORDER BY time_ns, recording_id")
-    with engine.connect() as connection:
-        before = connection.execute(stored).all()
-    with engine.begin() as connection:
-        command.downgrade(config(connection), "0045")
-    migrate(database_url)
-    with engine.connect() as connection:
-        assert connection.execute(stored).all() == before
+def test_a_record_that_leaves_a_baseline_is_compared_with_it(recorded: ExaminedRecordings) -> None:
+    """The level stays, and the record lies behind those that are judged again for their place."""
+    other_load = replace(_sound(-70.0), load_bin=6)
+    loud = replace(other_load, state=RotorState.WATCH)
+    third = _sound(-43.5, 3)
+    for finding in (_sound(-48.0, 3), _sound(-48.0, 3), *[other_load] * 4, third, loud):
+        recorded.add(finding)
+    assert recorded.repository.rotor_condition(MOTOR).state is RotorState.HEALTHY
+    recorded.add(_sound(-48.0, 3), at_ns=NOW_NS)
     assert recorded.repository.rotor_condition(MOTOR).state is RotorState.WATCH
+    assert recorded.repository.rotor_condition(MOTOR).since_ns == NOW_NS + 8 * SECOND_NS
 
 
 @pytest.mark.parametrize("seed", range(4))

@@ -87,14 +87,6 @@ def test_starts_between_two_times_are_counted(recorded: RecordedStarts) -> None:
     assert times == [NOW_NS + SECOND_NS, NOW_NS + 2 * SECOND_NS]
 
 
-def test_starts_of_earlier_versions_are_counted(recorded: RecordedStarts) -> None:
-    recorded.add(START)
-    recorded.add(None)
-    assert recorded.repository.unmeasured_starts("PUMP-A1") == 1
-    assert recorded.repository.unmeasured_starts("FAN-A2") == 0
-    assert recorded.repository.unmeasured_starts() == 1
-
-
 def test_figures_that_are_no_numbers_are_not_kept(recorded: RecordedStarts) -> None:
     recorded.add(replace(START, i2t_A2s=float("inf")))
     assert recorded.repository.starts("PUMP-A1", limit=10).items == ()

@@ -222,7 +222,7 @@ def test_trend_and_health(repository: Repository, store: RecordingStore) -> None
             job_id, diagnosis, recorded_ns=NOW_NS + i * SECOND_NS, now_ns=NOW_NS + 9, runner=RUNNER
         )
     points = repository.trend("FAN-A2", "mu_f", limit=10).items
-    assert [(p.recorded_ns, p.value, str(p.verdict)) for p in points] == [
+    assert [(p.time_ns, p.value, str(p.verdict)) for p in points] == [
         (NOW_NS, 0.01, "fault"),
         (NOW_NS + SECOND_NS, 0.02, "fault"),
         (NOW_NS + 2 * SECOND_NS, None, "undiagnosable"),

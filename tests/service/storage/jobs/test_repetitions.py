@@ -37,7 +37,13 @@ def test_what_is_made_in_this_way_is_done(repository: Repository, recordings: li
 
 @pytest.mark.usefixtures("recordings")
 def test_what_was_made_before_the_parameters_changed_is_to_do(repository: Repository) -> None:
-    document = {"nameplate": {}, "parameters": {"stator_resistance_ohm": 8.4}, "sensors": {}, "limits": {}}
+    document = {
+        "nameplate": {},
+        "parameters": {"stator_resistance_ohm": 8.4},
+        "tolerances": {"source": "given"},
+        "sensors": {},
+        "limits": {},
+    }
     edited = document | {"parameters": {"stator_resistance_ohm": 8.5}}
     repository.note_motors({MOTOR: document}, now_ns=NOW_NS)
     assert to_do(repository) == (0, 3)

@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import pytest
-from sqlalchemy import Engine, text
 
 from core.diagnosis.verdict import Diagnosis, Verdict
 from core.operation import Operation
@@ -122,36 +121,3 @@ def test_retention_keeps_the_newest_starts(recorded: Recorded) -> None:
         left = {one.id for one in recorded.repository.recordings(limit=10).items}
         assert before - left == deleted
         assert kept in left
-
-
-def test_older_diagnoses_tell_what_they_said_in_words(recorded: Recorded, engine: Engine) -> None:
-    """What the migration does with rows of an earlier version."""
-    from service.storage.migrations.versions import v0030_operations as migration
-
-    reasons = {
-        "start: the motor starts, its current comes and reaches 6 times the rated one: ...": ("start", None),
-        "start: the motor runs up, its current falls": ("start", "diagnose this recording again"),
-        "stop: the motor is switched off within the record": ("stop", None),
-        "running: there is no current at the supply's frequency": ("not-running", None),
-        "frequency: 42 Hz": (None, None),
-    }
-    ids = [recorded.add(None) for _ in reasons]
-    running = recorded.add(Operation.RUNNING)
-    with engine.begin() as connection:
-        for recording_id, reason in zip(ids, reasons, strict=True):
-            connection.execute(
-                text("UPDATE diagnoses SET document = :document WHERE recording_id = :id"),
-                {"document": f'{{"reasons": ["{reason}"]}}', "id": recording_id},
-            )
-        connection.execute(text("UPDATE recordings SET operation = NULL"))
-        for statement in migration.statements(engine.dialect.name):
-            connection.execute(statement)
-    for recording_id, (operation, remark) in zip(ids, reasons.values(), strict=True):
-        entry = recorded.repository.recording(recording_id)
-        assert entry.operation == operation
-        assert (entry.operation_remark or "").startswith(remark or "")
-        assert (entry.operation_remark is None) == (remark is None)
-    assert recorded.repository.recording(running).operation is Operation.RUNNING
-    health = recorded.repository.health(MOTOR)
-    assert health.diagnosis is not None
-    assert health.diagnosis.recording_id == running

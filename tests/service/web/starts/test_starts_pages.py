@@ -133,14 +133,6 @@ def test_all_motors_starts_are_listed_the_latest_first(
     assert addresses(document, "tbody th a") == ["/motors/FAN-A2/starts", HERE]
 
 
-def test_starts_without_figures_are_told(client: httpx.Client, recorded: RecordedStarts) -> None:
-    recorded.add(None)
-    for path in ("/starts", HERE):
-        text = page(client.get(path)).text_content()
-        assert "1 recording of starts was diagnosed by an earlier version" in text
-        assert "start" in text
-
-
 def test_without_starts_the_pages_say_so(client: httpx.Client) -> None:
     assert "No start is known yet" in client.get("/starts").text
     assert "No start of this motor is known yet" in client.get(HERE).text
