@@ -9,6 +9,7 @@ from fastapi.routing import iter_route_contexts
 from service.access.permissions import MEANINGS, PERMISSIONS_OF, Permission
 from service.api import ApiContext
 from service.api.access.requirements import requirement_of
+from service.api.access.site_rules import rule_of
 from service.configuration.settings import Settings
 from service.recording_store.folder import FolderStore
 from service.storage import Repository, connect
@@ -39,11 +40,12 @@ def permission_rows() -> Iterator[str]:
 
 def route_rows(*, of_pages: bool) -> Iterator[str]:
     """Yield the lines of the table of the API's routes, or of those of the pages."""
-    yield f"| {'Page' if of_pages else 'Route'} | {HEAD} | Needs |"
-    yield f"{LINE}|---|"
+    yield f"| {'Page' if of_pages else 'Route'} | {HEAD} | Needs | Sites |"
+    yield f"{LINE}|---|---|"
     for method, path, needed in sorted(_routes(of_pages=of_pages), key=lambda route: (route[1], route[0])):
         marks = " | ".join("*" for _ in Role) if needed is None else _marks(needed)
-        yield f"| `{method} {path}` | {marks} | {'-' if needed is None else f'`{needed}`'} |"
+        needs = "-" if needed is None else f"`{needed}`"
+        yield f"| `{method} {path}` | {marks} | {needs} | {rule_of(path, needed)} |"
 
 
 def written(page: str) -> str:
