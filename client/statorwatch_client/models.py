@@ -150,6 +150,7 @@ AuditAction: TypeAlias = Literal[
     "retention-applied",
     "backup-made",
     "backup-restored",
+    "plant-purged",
 ]
 
 
@@ -1492,7 +1493,8 @@ class User(TypedDict):
     """
     Somebody who may log in. has_password: whether with a password; subject: with an identity provider.
 
-    sites: where the roles hold; null: at all of them. has_second_factor: whether their password lets nobody in alone.
+    sites: where the roles hold; null: at all of them.
+    has_second_factor: whether their password lets nobody in alone.
     locked_until_time: none of their logins is tried before from some address, because too many failed.
     password_set_by: who else gave them their password, until they change it.
     """
