@@ -2024,9 +2024,9 @@ class AsyncOperations:
         return answer
 
     async def change_user(self, user: str, document: models.UserChange) -> models.User:
-        """Change a user's name or roles, disable or enable them.
+        """Change a user's name, roles or sites, disable or enable them.
 
-        Other roles end their sessions, being disabled their tokens, too.
+        Other roles or sites end their sessions, being disabled their tokens, too.
 
         Parameters
         ----------

@@ -150,6 +150,7 @@ AuditAction: TypeAlias = Literal[
     "retention-applied",
     "backup-made",
     "backup-restored",
+    "plant-purged",
 ]
 
 
@@ -645,6 +646,7 @@ class NewToken(TypedDict):
     user: str
     label: str
     scope: list[str] | None
+    sites: list[str] | None
     parent: str | None
     created_time: str
     expires_time: str | None
@@ -1399,6 +1401,7 @@ class Token(TypedDict):
     """
     A secret of a user for a program, without the secret. scope: null for all that the user may.
 
+    sites: where it holds, of the user's; null for all of them.
     parent: the token that asked for this one, and with which it ends; null where a person did.
     """
 
@@ -1406,21 +1409,27 @@ class Token(TypedDict):
     user: str
     label: str
     scope: list[str] | None
+    sites: list[str] | None
     parent: str | None
     created_time: str
     expires_time: str | None
     used_time: str | None
 
 
+Site1: TypeAlias = str
+
+
 class TokenRequest(TypedDict):
     """
     What a new token is for. scope: the permissions it has, by default all of who asks.
 
+    sites: where it holds, by default at all of who asks.
     expires_time: by default as late as the settings, and the token that asks, let it.
     """
 
     label: str
     scope: NotRequired[list[Permission] | None]
+    sites: NotRequired[list[Site1] | None]
     expires_time: NotRequired[str | None]
 
 
@@ -1482,6 +1491,7 @@ class User(TypedDict):
     """
     Somebody who may log in. has_password: whether with a password; subject: with an identity provider.
 
+    sites: where the roles hold; null: at all of them.
     has_second_factor: whether their password lets nobody in alone.
     locked_until_time: none of their logins is tried before from some address, because too many failed.
     password_set_by: who else gave them their password, until they change it.
@@ -1490,6 +1500,7 @@ class User(TypedDict):
     name: str
     full_name: str | None
     roles: list[Role]
+    sites: list[str] | None
     disabled: bool
     has_password: bool
     has_second_factor: bool
@@ -1504,11 +1515,15 @@ class User(TypedDict):
 
 class UserChange(TypedDict):
     """
-    What is to be changed of a user; what is left out stays.
+    What is to be changed of a user; what is left out, or null, stays.
+
+    sites: where the roles hold. all_sites: they hold everywhere.
     """
 
     full_name: NotRequired[str | None]
     roles: NotRequired[list[Role] | None]
+    sites: NotRequired[list[Site1] | None]
+    all_sites: NotRequired[bool]
     disabled: NotRequired[bool | None]
 
 
@@ -1516,12 +1531,14 @@ class UserRequest(TypedDict):
     """
     A new user, who changes the password first. Without one nobody can log in as them.
 
-    The role SECAUD is given by the owner of the service's files alone.
+    The role SECAUD is given by the owner of the service's files alone. sites: where the roles hold, by
+    default at all of them.
     """
 
     name: str
     full_name: NotRequired[str | None]
     roles: list[Role]
+    sites: NotRequired[list[Site1] | None]
     password: NotRequired[str | None]
 
 
@@ -1585,6 +1602,7 @@ class Account(TypedDict):
     Who asks, and what they may do. way: how they showed who they are.
 
     password_set_by: who else gave them the password of this session; they change it before they do anything.
+    sites: where the roles hold; null: at all of them.
     second_factor: "missing" where a role needs one and there is none; then one may but set it up.
     recovery_codes_left: that were not used.
     """
@@ -1592,6 +1610,7 @@ class Account(TypedDict):
     name: str
     full_name: str | None
     roles: list[Role]
+    sites: list[str] | None
     permissions: list[Permission]
     way: Literal["session", "token", "proxy", "none"]
     password_set_by: str | None

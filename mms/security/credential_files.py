@@ -16,6 +16,8 @@ PrivateKey = rsa.RSAPrivateKey | ec.EllipticCurvePrivateKey
 
 _LARGEST: Final = 1_000_000
 _OTHERS: Final = stat.S_IRWXG | stat.S_IRWXO
+_FROM_SYSTEMD: Final = Path("/run/credentials")
+"""Credentials of units lie below. Their access list lets the unit in; the bits of the group are its mask."""
 
 
 def read_secret(path: Path) -> bytes:
@@ -161,7 +163,8 @@ def _read(path: Path, *, secret: bool) -> bytes:
     try:
         with path.open("rb") as file:
             mode = stat.S_IMODE(os.fstat(file.fileno()).st_mode)
-            if secret and mode & _OTHERS:
+            others = stat.S_IRWXO if _FROM_SYSTEMD in path.resolve().parents else _OTHERS
+            if secret and mode & others:
                 raise CredentialFileError(
                     path, f"a file of mode 600, its owner's alone (chmod 600 {path})", f"mode {mode:03o}"
                 )

@@ -12,6 +12,7 @@ from structlog.typing import FilteringBoundLogger
 from core.units import NANOSECONDS_PER_DAY, NANOSECONDS_PER_SECOND, SECONDS_PER_HOUR, SECONDS_PER_MINUTE
 from service.access.bearer_secrets import LONGEST, digest_of
 from service.access.permissions import Permission, permissions_of
+from service.access.reach import Sites, both, permissions_at
 from service.access.second_factors import is_asked_of, is_missing
 from service.access.tokens import as_it_counts
 from service.configuration.access import AccessSettings
@@ -39,6 +40,7 @@ class Way(StrEnum):
 class Identity:
     """Somebody who showed who they are. session: the digest of its secret; token: the one they showed.
 
+    sites: where the roles hold.
     password_set_by: who else knows the password that they showed, and are to change before they do anything.
     may_make_tokens: whether they have shown the second factor, where they need one.
     """
@@ -47,6 +49,7 @@ class Identity:
     roles: frozenset[Role]
     permissions: frozenset[Permission]
     way: Way
+    sites: Sites = None
     session: str | None = None
     token: ApiToken | None = None
     password_set_by: str | None = None
@@ -87,6 +90,7 @@ def identity_of_login(
         user.roles,
         permissions_after_login(limits, user),
         Way.SESSION,
+        user.sites,
         session=digest,
         password_set_by=user.password_set_by,
         may_make_tokens=not is_missing(limits, user),
@@ -95,7 +99,7 @@ def identity_of_login(
 
 def permissions_after_login(limits: AccessSettings, user: User) -> frozenset[Permission]:
     """Return what a user may do who has logged in: see to the own account first, where that is to be."""
-    may = permissions_of(user.roles)
+    may = permissions_at(user.sites, permissions_of(user.roles))
     return may & {Permission.ACCOUNT} if is_account_first(limits, user) else may
 
 
@@ -123,11 +127,18 @@ def identity_of_token(
         return None
     if token.used_ns is None or now_ns - token.used_ns > NOTED_AGAIN_NS:
         _note(partial(repository.note_token_used, token.id, now_ns=now_ns))
-    may = permissions_of(user.roles)
+    sites = both(user.sites, token.sites)
+    may = permissions_at(sites, permissions_of(user.roles))
     if token.scope is not None:
         may &= scope_of(token.scope)
     return Identity(
-        user.name, user.roles, may, Way.TOKEN, token=token, may_make_tokens=not is_asked_of(limits, user)
+        user.name,
+        user.roles,
+        may,
+        Way.TOKEN,
+        sites,
+        token=token,
+        may_make_tokens=not is_asked_of(limits, user),
     )
 
 

@@ -26,7 +26,8 @@ from joserfc.jwk import JWKRegistry, KeySet
 
 from mms import CredentialFileError, read_secret
 from service.access.bearer_secrets import LONGEST
-from service.access.proxied import roles_of
+from service.access.proxied import roles_of, sites_of
+from service.access.reach import Sites
 from service.access.user_names import name_of
 from service.configuration.access import OidcSettings
 from service.storage.records import Role
@@ -73,12 +74,16 @@ class Attempt:
 
 @dataclass(frozen=True, slots=True)
 class SignedOn:
-    """Whom a provider names. subject: the provider and what it calls them for good."""
+    """Whom a provider names. subject: the provider and what it calls them for good.
+
+    sites: where its groups let them be; None where they do not tell.
+    """
 
     subject: str
     name: str
     full_name: str | None
     roles: frozenset[Role]
+    sites: Sites
 
 
 class OpenIdProvider:
@@ -178,14 +183,15 @@ class OpenIdProvider:
         if not isinstance(subject, str) or not 0 < len(subject) <= 255:
             raise SignOnRefusedError("the ID token names nobody (sub)")
         found = _claim(claims, settings.roles_claim)
-        groups = [found] if isinstance(found, str) else found if isinstance(found, list) else []
-        roles = roles_of([group for group in groups if isinstance(group, str)], settings.roles)
+        told = [found] if isinstance(found, str) else found if isinstance(found, list) else []
+        groups = [group for group in told if isinstance(group, str)]
         full_name = claims.get("name")
         return SignedOn(
             f"{self._issuer()} {subject}",
             name,
             full_name[:100] if isinstance(full_name, str) and full_name.isprintable() else None,
-            roles,
+            roles_of(groups, settings.roles),
+            sites_of(groups, settings.sites),
         )
 
     def _issuer(self) -> str:

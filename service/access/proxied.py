@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from service.access.identities import Identity, Way
 from service.access.permissions import permissions_of
+from service.access.reach import Sites, permissions_at
 from service.access.user_names import NAME_RULE, name_of
 from service.configuration.access import ProxySettings, RoleName
 from service.storage import NotFoundError, Repository
@@ -43,15 +44,26 @@ def identity_of_proxied(
                 f"there is no user {name}: a SECADM makes one (mcc user add {name} --no-password --role ROLE)"
             )
         roles = user.roles
-    else:
+    sites = None if user is None else user.sites
+    if proxy.roles_header is not None:
         groups = [word.strip() for value in values_of(proxy.roles_header) for word in value.split(",")]
         roles = roles_of(groups, proxy.roles)
         if roles >= {Role.SECADM, Role.SECAUD}:
             raise ProxiedUserError(f"expected groups of {name} for SECADM or SECAUD, found both")
-    return Identity(name, roles, permissions_of(roles), Way.PROXY)
+        if proxy.sites is not None:
+            sites = sites_of(groups, proxy.sites)
+    return Identity(name, roles, permissions_at(sites, permissions_of(roles)), Way.PROXY, sites)
 
 
 def roles_of(groups: Iterable[str], given: Mapping[RoleName, Sequence[str]]) -> frozenset[Role]:
     """Return the roles that groups of somebody else's directory give."""
     found = set(groups)
     return frozenset(Role(role) for role, names in given.items() if found & set(names))
+
+
+def sites_of(groups: Iterable[str], given: Mapping[str, Sequence[str]] | None) -> Sites:
+    """Return the sites that groups of somebody else's directory give; all where it is not asked."""
+    if given is None:
+        return None
+    found = set(groups)
+    return frozenset(site for site, names in given.items() if found & set(names))

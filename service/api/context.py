@@ -1,13 +1,14 @@
 """What the routes stand on."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Annotated, Protocol
 from urllib.parse import quote
 
 from fastapi import Depends, Request
 
 from core.machines.parameters import Motor
+from service.access.reach import Sites
 from service.access.refusals import Refusals
 from service.api.limits.admission import Admission
 from service.configuration.settings import Settings
@@ -18,6 +19,11 @@ from service.waveforms.recorded import Recorded
 
 Problem = Callable[[], str | None]
 """A check that returns what keeps a part of the service from working; None when it works."""
+
+
+READING = ("GET", "HEAD")
+SITES_KEY = "statorwatch.sites"
+"""Where a request has the sites that its caller may see; without it, all."""
 
 
 class Integration(Protocol):
@@ -82,6 +88,10 @@ class ApiContext:
         """Return the stored recordings, to be looked at."""
         return Recorded(self.repository, self.store, self.motors, self.compute)
 
+    def within(self, sites: Sites) -> "ApiContext":
+        """Return the same for who may see these sites alone."""
+        return self if sites is None else replace(self, repository=self.repository.within(sites))
+
     def require_motor(self, name: str | None) -> None:
         """Raise NotFoundError where a list is asked for of a motor that there is not; None asks for all."""
         if name is not None:
@@ -92,7 +102,8 @@ async def _context_of(request: Request) -> ApiContext:  # async: a plain functio
     context = request.app.state.context
     if not isinstance(context, ApiContext):
         raise TypeError("the application was not made by create_app")
-    return context
+    # Who changes something was asked where it is; then all rows count, or files that others need would go.
+    return context.within(request.scope.get(SITES_KEY)) if request.method in READING else context
 
 
 def path_to(request: Request, route: str, **parameters: object) -> str:

@@ -57,6 +57,7 @@ class AuditAction(StrEnum):
     RETENTION_APPLIED = "retention-applied"
     BACKUP_MADE = "backup-made"
     BACKUP_RESTORED = "backup-restored"
+    PLANT_PURGED = "plant-purged"
 
 
 MEANINGS: Mapping[AuditAction, str] = {
@@ -129,6 +130,9 @@ MEANINGS: Mapping[AuditAction, str] = {
     AuditAction.BACKUP_MADE: "Somebody made a back-up (`mcc backup`); not those of `[backup]`.",
     AuditAction.BACKUP_RESTORED: (
         "Somebody put this database in place from a back-up (`mcc restore`); `after` says which one."
+    ),
+    AuditAction.PLANT_PURGED: (
+        "Somebody had all of the plant deleted (`mcc purge`): the last entry, in the file that it exported."
     ),
 }
 """What each action means, for the reference page."""

@@ -45,17 +45,31 @@ class PostgresqlPlace:
 
     def require_empty(self) -> None:
         """Raise BackupError where there are tables."""
-        engine = connect(self._url)
-        try:
-            with engine.connect() as connection:
-                present = inspect(connection).get_table_names()
-        finally:
-            engine.dispose()
+        present = self.tables()
         if present:
             raise BackupError(
                 f"{readable_url(self._url)}: the database has tables already, such as {min(present)}; "
                 "with --overwrite all of them are replaced"
             )
+
+    def tables(self) -> Sequence[str]:
+        """Return the names of the tables that there are."""
+        engine = connect(self._url)
+        try:
+            with engine.connect() as connection:
+                return inspect(connection).get_table_names()
+        finally:
+            engine.dispose()
+
+    def remove_all(self) -> None:
+        """Drop all tables in one transaction. Raises BackupError where somebody else is connected."""
+        engine = connect(self._url, limits=None)
+        try:
+            with engine.begin() as connection:
+                self._require_alone(connection)
+                self._drop_all(connection)
+        finally:
+            engine.dispose()
 
     def restore(self, backup: Verified) -> None:
         """Replace all tables in one transaction."""

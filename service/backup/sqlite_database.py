@@ -48,6 +48,12 @@ class SqlitePlace:
                 "another name"
             )
 
+    def require_alone(self) -> None:
+        """Raise BackupError where another program has the database open."""
+        if self._file.exists():
+            with _sqlite_alone(self._file):
+                pass
+
     def restore(self, backup: Verified) -> Path | None:
         """Put the back-up's database in place in one step. Return where the one before is now, if any.
 

@@ -18,6 +18,7 @@ class ProxySettings(BaseModel):
 
     addresses: of the proxy, no headers of others count. user_header: has the name of who is logged in there.
     roles_header: has what `roles` translates, with commas between; without it users and their roles are ours.
+    sites: what in roles_header gives each site; without it sites are those that the user has here.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -26,11 +27,13 @@ class ProxySettings(BaseModel):
     user_header: HeaderName | None = None
     roles_header: HeaderName | None = None
     roles: dict[RoleName, tuple[str, ...]] = Field(default_factory=dict)
+    sites: dict[str, tuple[str, ...]] | None = None
 
 
 class OidcSettings(BaseModel):
     """An OpenID provider: [access.oidc]. roles: the values of roles_claim that give each role.
 
+    sites: the same for each site; without it sites are those that the user has here.
     confirmation_days: the tokens of somebody count for so long after the provider last let them in.
     """
 
@@ -44,6 +47,7 @@ class OidcSettings(BaseModel):
     name_claim: str = "preferred_username"
     roles_claim: str = "roles"
     roles: dict[RoleName, tuple[str, ...]] = Field(default_factory=dict)
+    sites: dict[str, tuple[str, ...]] | None = None
     ca: AbsolutePath | None = None
     timeout_s: float = Field(default=5.0, ge=0.1, le=60)
     confirmation_days: float = Field(default=7.0, ge=0.01, le=365)

@@ -9,6 +9,7 @@ from fastapi.routing import iter_route_contexts
 from service.access.permissions import MEANINGS, PERMISSIONS_OF, Permission
 from service.api import ApiContext
 from service.api.access.requirements import requirement_of
+from service.api.access.site_rules import NO_SITE, rule_of
 from service.configuration.settings import Settings
 from service.recording_store.folder import FolderStore
 from service.storage import Repository, connect
@@ -38,14 +39,15 @@ def permission_rows() -> Iterator[str]:
 
 
 def route_rows(*, of_pages: bool) -> Iterator[str]:
-    """Yield what needs each permission: the API's routes, or those of the pages."""
-    needing: dict[Permission | None, list[str]] = {}
+    """Yield what needs each permission, by what it is about: the API's routes, or those of the pages."""
+    needing: dict[tuple[Permission | None, str], list[str]] = {}
     for method, path, needed in sorted(_routes(of_pages=of_pages), key=lambda route: (route[1], route[0])):
-        needing.setdefault(needed, []).append(f"`{method} {path}`")
+        needing.setdefault((needed, str(rule_of(path, needed))), []).append(f"`{method} {path}`")
     for permission in (None, *Permission):
-        if permission in needing:
-            who = "anybody" if permission is None else f"`{permission}`"
-            yield f"- {who}: {', '.join(needing[permission])}"
+        for (needed, about), routes in sorted(needing.items(), key=lambda one: one[0][1]):
+            if needed is permission:
+                who = "anybody" if permission is None else f"`{permission}`"
+                yield f"- {who}{'' if about == NO_SITE else f', {about}'}: {', '.join(routes)}"
 
 
 def written(page: str) -> str:

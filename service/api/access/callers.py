@@ -8,8 +8,11 @@ from fastapi import Depends, Request
 
 from service.access.identities import Way
 from service.access.permissions import Permission, permissions_of, roles_with
+from service.access.reach import OF_WHOLE_PLANT, Sites
 from service.api.problems import ProblemError
 from service.storage.records import Actor, ApiToken
+from service.storage.repository import Repository
+from service.storage.repository.sites import AtSite
 
 SCOPE_KEY = "statorwatch.caller"
 
@@ -23,7 +26,8 @@ FIRST_USER = (
 class Caller:
     """Who asks, and what they may do: no more than their roles, and less with a token of a narrow scope.
 
-    session: the digest of the session's secret; None for those who use none. token: the one that they use.
+    sites: where their roles hold; None: at all. session: the digest of the session's secret; None for those
+    who use none. token: the one that they use.
     password_set_by: who else knows their password, which they are to change before they do anything.
     may_make_tokens: whether they have shown the second factor, where they need one.
     """
@@ -31,6 +35,7 @@ class Caller:
     actor: Actor
     permissions: frozenset[Permission]
     way: Way
+    sites: Sites = None
     session: str | None = None
     token: ApiToken | None = None
     password_set_by: str | None = None
@@ -40,6 +45,23 @@ class Caller:
         """Raise ProblemError (403) where the caller may not."""
         if permission not in self.permissions:
             raise forbidden(self, permission, what)
+
+    def demand_here(self, repository: Repository, what: AtSite, *keys: str) -> None:
+        """Raise ProblemError (403) where one of these is at another site. For what a path does not name."""
+        if self.sites is None:
+            return
+        if any(repository.is_elsewhere(what, key, self.sites) for key in keys):
+            raise elsewhere(self, f"a {what} at another site")
+
+
+def elsewhere(caller: Caller, what: str) -> ProblemError:
+    """Return the answer to a caller whose sites are others. what: it is about."""
+    sites = ", ".join(sorted(caller.sites or ())) or "none"
+    return ProblemError(
+        HTTPStatus.FORBIDDEN,
+        f"{caller.actor.name} may not do this: it is about {what}, and the sites of {caller.actor.name} are: "
+        f"{sites}; a SECADM gives others (mcc user change {caller.actor.name} --site SITE)",
+    )
 
 
 def forbidden(caller: Caller, permission: Permission, what: str = "do this") -> ProblemError:
@@ -51,6 +73,8 @@ def forbidden(caller: Caller, permission: Permission, what: str = "do this") -> 
             f"{name} may not {what} yet: {caller.password_set_by} set this password and knows it; change it "
             "first (mcc password, or the page Account)",
         )
+    if caller.sites is not None and permission in OF_WHOLE_PLANT & permissions_of(caller.actor.roles):
+        return elsewhere(caller, "the whole plant")
     if caller.token is not None and permission in permissions_of(caller.actor.roles):
         scope = ", ".join(sorted(caller.token.scope or ()))
         return ProblemError(

@@ -15,21 +15,23 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from structlog.typing import FilteringBoundLogger
 
 from service.access.identities import Identity, Way, identity_of_session, identity_of_token
-from service.access.permissions import PERMISSIONS_OF, Permission
+from service.access.permissions import PERMISSIONS_OF
 from service.access.proxied import ProxiedUserError, identity_of_proxied
+from service.access.reach import OF_PEOPLE
 from service.access.refusals import NOBODY, Refusal
-from service.api.access.callers import FIRST_USER, SCOPE_KEY, Caller, forbidden
+from service.api.access.callers import FIRST_USER, SCOPE_KEY, Caller, elsewhere, forbidden
 from service.api.access.client_address import ClientAddress, client_address
 from service.api.access.cookies import session_secret
 from service.api.access.refusals import refuse
-from service.api.access.requirements import RouteNeeds
-from service.api.context import ApiContext
+from service.api.access.requirements import Need, RouteNeeds
+from service.api.access.site_rules import WHOLE_PLANT, is_elsewhere
+from service.api.context import READING, SITES_KEY, ApiContext
 from service.api.problems import ProblemError, database_response, problem_response
 from service.storage.records import Actor, Role
+from service.storage.repository.sites import AtSite
 
 log: FilteringBoundLogger = structlog.get_logger(__name__)
 
-READING = ("GET", "HEAD")
 BEARER = "bearer"
 
 BY_ITSELF = "x-refresh"
@@ -42,9 +44,6 @@ NOT_LOCAL = (
 SAY_WHO = "say who you are: log in (mcc login), or send a token (Authorization: Bearer ...)"
 ENDED = "the session has ended, or never was: log in (mcc login)"
 NO_TOKEN = "the token is unknown, revoked or expired"  # noqa: S105 - what is said of one
-OF_PEOPLE = frozenset({Permission.ACCOUNT, Permission.USERS, Permission.AUDIT})
-"""Answers of routes that need one of these tell of people: no cache keeps them."""
-
 CHALLENGE = {"WWW-Authenticate": 'Bearer realm="statorwatch"'}
 
 
@@ -79,9 +78,9 @@ class Gate:
             await refuse(database_response(scope["path"], error), scope, receive, send)
         else:
             answering = self._noting(caller, scope, send)
-            if self._needs.of(scope["method"], scope["path"]) in OF_PEOPLE:
-                answering = _unstored(answering)
-            await self._app({**scope, SCOPE_KEY: caller}, receive, answering)
+            if self._needs.of(scope["method"], scope["path"]).permission in OF_PEOPLE:
+                answering = _unstored(answering)  # no cache keeps what tells of people
+            await self._app({**scope, SCOPE_KEY: caller, SITES_KEY: caller.sites}, receive, answering)
 
     def _noting(self, caller: Caller, scope: Scope, send: Send) -> Send:
         """Return what sends the answer, and notes where a route has refused this caller by itself."""
@@ -111,16 +110,32 @@ class Gate:
             actor,
             identity.permissions,
             identity.way,
+            identity.sites,
             identity.session,
             identity.token,
             identity.password_set_by,
             identity.may_make_tokens,
         )
-        needed = self._needs.of(scope["method"], scope["path"])
-        if needed is not None and needed not in caller.permissions:
+        need = self._needs.of(scope["method"], scope["path"])
+        why = self._refused(caller, need)
+        if why is not None:
             self._note(Refusal.PERMISSION, actor, scope)
-            raise forbidden(caller, needed)
+            raise why
         return caller
+
+    def _refused(self, caller: Caller, need: Need) -> ProblemError | None:
+        """Return why a caller may not have this route; None where they may."""
+        if need.permission is not None and need.permission not in caller.permissions:
+            return forbidden(caller, need.permission)
+        if caller.sites is None:
+            return None
+        if need.about == WHOLE_PLANT:
+            return elsewhere(caller, "the whole plant")
+        if isinstance(need.about, AtSite) and is_elsewhere(
+            self._context.repository, need.about, need.parameters, caller.sites
+        ):
+            return elsewhere(caller, f"a {need.about} at another site")
+        return None
 
     def _identity(self, headers: Headers, origin: ClientAddress) -> Identity | None:
         """Return who a request says it comes from; None where it does not say. Raises ProblemError."""

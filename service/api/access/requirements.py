@@ -1,6 +1,7 @@
 """What a route needs of its caller. Every route declares it; a test fails for one that does not."""
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from re import Pattern
 from typing import Any
 
@@ -9,6 +10,7 @@ from starlette.routing import compile_path
 
 from service.access.permissions import Permission
 from service.api.access.callers import caller_of
+from service.api.access.site_rules import NO_SITE, SiteRule, rule_of
 
 
 class Requirement:
@@ -49,6 +51,15 @@ def requirement_of(dependencies: Sequence[params.Depends]) -> Permission | None:
     raise LookupError("expected a route with require(Permission....) or open_to_all() in its dependencies")
 
 
+@dataclass(frozen=True, slots=True)
+class Need:
+    """What the route of a request needs: a permission, and what it is about. parameters: of its path."""
+
+    permission: Permission | None = None
+    about: SiteRule = NO_SITE
+    parameters: Mapping[str, str] = field(default_factory=dict)
+
+
 class RouteNeeds:
     """What each route needs of its caller, by method and path: known before anything is read of a body.
 
@@ -59,20 +70,24 @@ class RouteNeeds:
     """
 
     def __init__(self, routes: Iterable[tuple[str, str, Permission | None]]) -> None:
-        fixed: dict[tuple[str, str], Permission | None] = {}
-        patterns: dict[str, list[tuple[Pattern[str], Permission | None]]] = {}
+        fixed: dict[tuple[str, str], Need] = {}
+        patterns: dict[str, list[tuple[Pattern[str], Need]]] = {}
         for method, path, needed in routes:
+            need = Need(needed, rule_of(path, needed))
             if "{" in path:
-                patterns.setdefault(method, []).append((compile_path(path)[0], needed))
+                patterns.setdefault(method, []).append((compile_path(path)[0], need))
             else:
-                fixed[method, path] = needed
+                fixed[method, path] = need
         self._fixed = fixed
-        self._patterns: Mapping[str, Sequence[tuple[Pattern[str], Permission | None]]] = patterns
-        self.open_paths = frozenset(path for (_, path), needed in fixed.items() if needed is None)
+        self._patterns: Mapping[str, Sequence[tuple[Pattern[str], Need]]] = patterns
+        self.open_paths = frozenset(path for (_, path), need in fixed.items() if need.permission is None)
 
-    def of(self, method: str, path: str) -> Permission | None:
-        """Return what the route of a request needs; None where there is none, or one that is open to all."""
+    def of(self, method: str, path: str) -> Need:
+        """Return what the route of a request needs; nothing where there is none, or it is open to all."""
         if (method, path) in self._fixed:
             return self._fixed[method, path]
-        matching = (needed for pattern, needed in self._patterns.get(method, ()) if pattern.match(path))
-        return next(matching, None)
+        for pattern, need in self._patterns.get(method, ()):
+            found = pattern.match(path)
+            if found is not None:
+                return replace(need, parameters=found.groupdict())
+        return Need()

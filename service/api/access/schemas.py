@@ -2,7 +2,7 @@
 
 from typing import Annotated, Literal
 
-from pydantic import BeforeValidator, Field, StringConstraints
+from pydantic import BeforeValidator, Field, StringConstraints, model_validator
 
 from service.access.permissions import Permission
 from service.access.second_factors import CODES
@@ -24,9 +24,14 @@ def _name(value: object) -> object:
 NewName = Annotated[
     str, StringConstraints(max_length=100), BeforeValidator(_name), Field(description=f"{NAME_RULE}.")
 ]
+MOST_SITES = 100
+SiteName = Annotated[str, StringConstraints(min_length=1, max_length=200, pattern=r"^[^\x00]+$")]
 UserName = Annotated[str, StringConstraints(min_length=1, max_length=100, pattern=r"^[^\x00/]+$")]
 Password = Annotated[str, StringConstraints(min_length=1, max_length=1024)]
 Roles = Annotated[set[Role], Field(max_length=len(Role))]
+
+
+Sites = Annotated[set[SiteName], Field(max_length=MOST_SITES)]
 
 
 FactorCodeText = Annotated[str, StringConstraints(min_length=1, max_length=40)]
@@ -55,6 +60,7 @@ class Account(Document):
     """Who asks, and what they may do. way: how they showed who they are.
 
     password_set_by: who else gave them the password of this session; they change it before they do anything.
+    sites: where the roles hold; null: at all of them.
     second_factor: "missing" where a role needs one and there is none; then one may but set it up.
     recovery_codes_left: that were not used.
     """
@@ -62,6 +68,7 @@ class Account(Document):
     name: str
     full_name: str | None
     roles: Listed[Role]
+    sites: Listed[str] | None
     permissions: Listed[Permission]
     way: Literal["session", "token", "proxy", "none"]
     password_set_by: str | None
@@ -116,6 +123,7 @@ class NewPassword(RequestDocument):
 class User(Document):
     """Somebody who may log in. has_password: whether with a password; subject: with an identity provider.
 
+    sites: where the roles hold; null: at all of them.
     has_second_factor: whether their password lets nobody in alone.
     locked_until_time: none of their logins is tried before from some address, because too many failed.
     password_set_by: who else gave them their password, until they change it.
@@ -124,6 +132,7 @@ class User(Document):
     name: str
     full_name: str | None
     roles: Listed[Role]
+    sites: Listed[str] | None
     disabled: bool
     has_password: bool
     has_second_factor: bool
@@ -139,26 +148,40 @@ class User(Document):
 class UserRequest(RequestDocument):
     """A new user, who changes the password first. Without one nobody can log in as them.
 
-    The role SECAUD is given by the owner of the service's files alone.
+    The role SECAUD is given by the owner of the service's files alone. sites: where the roles hold, by
+    default at all of them.
     """
 
     name: NewName
     full_name: Person | None = None
     roles: Roles
+    sites: Sites | None = None
     password: Password | None = None
 
 
 class UserChange(RequestDocument):
-    """What is to be changed of a user; what is left out stays."""
+    """What is to be changed of a user; what is left out, or null, stays.
+
+    sites: where the roles hold. all_sites: they hold everywhere.
+    """
 
     full_name: Person | None = None
     roles: Roles | None = None
+    sites: Sites | None = None
+    all_sites: bool = False
     disabled: bool | None = None
+
+    @model_validator(mode="after")
+    def _has_one_reach(self) -> "UserChange":
+        if self.all_sites and self.sites is not None:
+            raise ValueError("expected `sites` or `all_sites`, found both")
+        return self
 
 
 class Token(Document):
     """A secret of a user for a program, without the secret. scope: null for all that the user may.
 
+    sites: where it holds, of the user's; null for all of them.
     parent: the token that asked for this one, and with which it ends; null where a person did.
     """
 
@@ -166,6 +189,7 @@ class Token(Document):
     user: str
     label: str
     scope: Listed[str] | None
+    sites: Listed[str] | None
     parent: str | None
     created_time: Time = Field(validation_alias="created_ns")
     expires_time: Time | None = Field(validation_alias="expires_ns")
@@ -181,9 +205,11 @@ class NewToken(Token):
 class TokenRequest(RequestDocument):
     """What a new token is for. scope: the permissions it has, by default all of who asks.
 
+    sites: where it holds, by default at all of who asks.
     expires_time: by default as late as the settings, and the token that asks, let it.
     """
 
     label: Person
     scope: Annotated[set[Permission], Field(min_length=1, max_length=len(Permission))] | None = None
+    sites: Annotated[set[SiteName], Field(min_length=1, max_length=MOST_SITES)] | None = None
     expires_time: TimeParameter | None = None

@@ -146,6 +146,7 @@ def _user(context: ApiContext, found: SignedOn, by: Actor) -> User:
             found.subject,
             found.name,
             found.roles,
+            sites=found.sites,
             full_name=found.full_name,
             by=by,
             now_ns=time.time_ns(),

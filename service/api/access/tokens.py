@@ -10,6 +10,7 @@ from fastapi import APIRouter
 from service.access.bearer_secrets import digest_of, new_token
 from service.access.identities import Way
 from service.access.permissions import Permission
+from service.access.reach import is_within
 from service.access.tokens import TokenLifetimeError, as_it_counts, end_of
 from service.api.access.callers import Asking, By, Caller
 from service.api.access.requirements import require
@@ -47,6 +48,11 @@ def add_own_token(context: Context, asking: Asking, wanted: TokenRequest) -> New
         raise WrongFieldError("body.scope", message)
     if scope is None and asking.way is not Way.SESSION:  # a token or a proxy may give less than the roles
         scope = set(asking.permissions)
+    sites = wanted.sites
+    if sites is not None and not is_within(sites, asking.sites):
+        raise WrongFieldError("body.sites", f"expected sites of yours, found {', '.join(sorted(sites))}")
+    if sites is None and asking.way is not Way.SESSION:
+        sites = None if asking.sites is None else set(asking.sites)
     now_ns = time.time_ns()
     try:
         expires_ns = end_of(wanted.expires_time, context.settings.access, parent=asking.token, now_ns=now_ns)
@@ -58,6 +64,7 @@ def add_own_token(context: Context, asking: Asking, wanted: TokenRequest) -> New
         wanted.label,
         digest_of(secret),
         scope=scope,
+        sites=sites,
         expires_ns=expires_ns,
         parent=None if asking.token is None else asking.token.id,
         by=asking.actor,

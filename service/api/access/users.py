@@ -48,6 +48,7 @@ async def add_user(
             wanted.name,
             wanted.roles,
             password=kept,
+            sites=wanted.sites,
             full_name=wanted.full_name,
             by=caller,
             now_ns=time.time_ns(),
@@ -65,13 +66,15 @@ def get_user(context: Context, name: UserName) -> User:
 
 @router.patch("/{name}", responses=problems(400, 404, 409, 413), dependencies=[require(Permission.USERS)])
 def change_user(context: Context, name: UserName, wanted: UserChange, caller: By) -> User:
-    """Change a user's name or roles, disable or enable them.
+    """Change a user's name, roles or sites, disable or enable them.
 
-    Other roles end their sessions, being disabled their tokens, too.
+    Other roles or sites end their sessions, being disabled their tokens, too.
     """
     user = context.repository.change_user(
         name,
         roles=wanted.roles,
+        sites=wanted.sites,
+        at_all_sites=wanted.all_sites,
         disabled=wanted.disabled,
         full_name=wanted.full_name,
         by=caller,

@@ -13,7 +13,7 @@ from pydantic import StringConstraints
 
 from core.units import NANOSECONDS_PER_DAY
 from service.access.permissions import Permission
-from service.api.access.callers import By
+from service.api.access.callers import Asking, By
 from service.api.access.requirements import require
 from service.api.alarms.schemas import (
     AcknowledgementRequest,
@@ -26,6 +26,7 @@ from service.api.alarms.schemas import (
 from service.api.context import Context
 from service.api.problems import FieldError, ProblemError, WrongFieldError, problems
 from service.api.times import rfc3339
+from service.storage.repository.sites import AtSite
 
 LONGEST_SHELVING_DAYS = 90
 """What is set aside for longer is forgotten: it is taken out of service, which the lists tell apart."""
@@ -45,10 +46,13 @@ Said = Annotated[Remark | None, Body()]
     responses=problems(400, 409, 413),
     dependencies=[require(Permission.ACKNOWLEDGE)],
 )
-def acknowledge_alarms(context: Context, by: By, wanted: AcknowledgementRequest) -> Acknowledgements:
+def acknowledge_alarms(context: Context, asking: Asking, wanted: AcknowledgementRequest) -> Acknowledgements:
     """Take notice of several alarms, of all for which that is possible; 409 where it is for none."""
     ids = list(dict.fromkeys(str(one) for one in wanted.alarms))
-    done = context.repository.acknowledge_alarms(ids, by=by, now_ns=time.time_ns(), comment=wanted.comment)
+    asking.demand_here(context.repository, AtSite.ALARM, *ids)
+    done = context.repository.acknowledge_alarms(
+        ids, by=asking.actor, now_ns=time.time_ns(), comment=wanted.comment
+    )
     if not done.alarms:
         errors = [
             FieldError(location=f"body.alarms.{ids.index(one)}", message=why)

@@ -18,7 +18,7 @@ from core.operation import Operation
 from core.recordings import Envelope, RecordingError, read_envelope
 from core.recordings.reading import recording_name
 from service.access.permissions import Permission
-from service.api.access.callers import By
+from service.api.access.callers import Asking, Caller
 from service.api.access.requirements import require
 from service.api.context import ApiContext, Context, path_to
 from service.api.exports.answers import FILES, ListAnswer
@@ -37,6 +37,7 @@ from service.retention.deletion import remove_discarded_folder_if_possible
 from service.storage.errors import FolderGoneError, TooManyWaitingError
 from service.storage.records import Actor, RecordingEntry
 from service.storage.repository.recordings.recordings import AddedRecording
+from service.storage.repository.sites import AtSite
 from service.storage.states import RecordingState
 
 router = APIRouter(tags=["recordings"])
@@ -107,7 +108,7 @@ async def upload_recording(
     context: Context,
     request: Request,
     response: Response,
-    caller: By,
+    asking: Asking,
     motor: Annotated[str, Form(min_length=1, max_length=200, description="Name of the motor recorded.")],
     files: Annotated[
         list[UploadFile],
@@ -120,7 +121,7 @@ async def upload_recording(
 ) -> RecordingDetails:
     """Store the files of one recording and queue its diagnosis; one the motor has stays as it is."""
     async with context.uploads.admitted():
-        added, details = await run_in_threadpool(store_upload, context, caller, motor, files)
+        added, details = await run_in_threadpool(store_upload, context, asking, motor, files)
     if not added.created:
         response.status_code = HTTPStatus.OK
     response.headers["Location"] = path_to(request, "get_recording", recording_id=added.recording.id)
@@ -198,17 +199,18 @@ def _envelope(context: ApiContext, recording_id: str, points: int) -> Envelope:
 
 
 def store_upload(
-    context: ApiContext, by: Actor, motor: str, files: list[UploadFile]
+    context: ApiContext, asking: Caller, motor: str, files: list[UploadFile]
 ) -> tuple[AddedRecording, RecordingDetails]:
     """Store the files of one recording and queue its diagnosis, in a thread that may wait for the disk.
 
     Raises ProblemError, NotFoundError, TooManyWaitingError, OSError.
     """
+    asking.demand_here(context.repository, AtSite.MOTOR, motor)
     context.repository.motor(motor)
     try:
-        added = _add(context, by, motor, files)
+        added = _add(context, asking.actor, motor, files)
     except FolderGoneError:  # a recording of the same content was deleted just now
-        added = _add(context, by, motor, files)
+        added = _add(context, asking.actor, motor, files)
     context.on_new_job()
     return added, _details(context, added.recording)
 

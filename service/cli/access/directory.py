@@ -43,13 +43,18 @@ class Directory(Protocol):
         ...
 
     def add_user(
-        self, name: str, roles: Collection[Role], full_name: str | None, password: str | None
+        self,
+        name: str,
+        roles: Collection[Role],
+        sites: Collection[str] | None,
+        full_name: str | None,
+        password: str | None,
     ) -> Document:
-        """Add a user."""
+        """Add a user. sites: where the roles hold; None: at all of them."""
         ...
 
     def change_user(self, name: str, change: Mapping[str, object]) -> Document:
-        """Change what is given: full_name, roles, disabled."""
+        """Change what is given: full_name, roles, sites, all_sites, disabled."""
         ...
 
     def set_password(self, name: str, password: str) -> None:
@@ -77,7 +82,12 @@ class Directory(Protocol):
         ...
 
     def add_token(
-        self, user: str | None, label: str, scope: Collection[str] | None, expires_time: str | None
+        self,
+        user: str | None,
+        label: str,
+        scope: Collection[str] | None,
+        sites: Collection[str] | None,
+        expires_time: str | None,
     ) -> Document:
         """Make a token of who asks, or in the database of a user whom nobody can log in as.
 
@@ -123,12 +133,18 @@ class _AtService:
         return list(self._service.list_users())
 
     def add_user(
-        self, name: str, roles: Collection[Role], full_name: str | None, password: str | None
+        self,
+        name: str,
+        roles: Collection[Role],
+        sites: Collection[str] | None,
+        full_name: str | None,
+        password: str | None,
     ) -> Document:
         return self._service.add_user(
             {
                 "name": name,
                 "roles": [one.value for one in sorted(roles)],
+                "sites": None if sites is None else sorted(sites),
                 "full_name": full_name,
                 "password": password,
             }
@@ -156,10 +172,20 @@ class _AtService:
         return list(self._service.list_tokens() if self._manages() else self._service.list_own_tokens())
 
     def add_token(
-        self, user: str | None, label: str, scope: Collection[str] | None, expires_time: str | None
+        self,
+        user: str | None,
+        label: str,
+        scope: Collection[str] | None,
+        sites: Collection[str] | None,
+        expires_time: str | None,
     ) -> Document:
         words = None if scope is None else cast("list[Permission]", sorted(scope))
-        wanted: TokenRequest = {"label": label, "scope": words, "expires_time": expires_time}
+        wanted: TokenRequest = {
+            "label": label,
+            "scope": words,
+            "sites": None if sites is None else sorted(sites),
+            "expires_time": expires_time,
+        }
         if user is not None:
             raise CommandError(
                 "--user: expected --config or --local beside it: users make their own tokens (mcc login, "
@@ -198,22 +224,37 @@ class _InDatabase:
         return [_user(user) for user in users]
 
     def add_user(
-        self, name: str, roles: Collection[Role], full_name: str | None, password: str | None
+        self,
+        name: str,
+        roles: Collection[Role],
+        sites: Collection[str] | None,
+        full_name: str | None,
+        password: str | None,
     ) -> Document:
         proper = name_of(name)
         if proper is None:
             raise CommandError(f"NAME: expected {NAME_RULE}, found {name!r}")
         kept = None if password is None else _hashed(password, proper, full_name)
         user = self._repository.add_user(
-            proper, roles, password=kept, full_name=full_name, by=self._by, now_ns=time.time_ns()
+            proper,
+            roles,
+            sites=sites,
+            password=kept,
+            full_name=full_name,
+            by=self._by,
+            now_ns=time.time_ns(),
         )
         return _user(user)
 
     def change_user(self, name: str, change: Mapping[str, object]) -> Document:
-        roles, disabled, full_name = (change.get(key) for key in ("roles", "disabled", "full_name"))
+        roles, sites, disabled, full_name = (
+            change.get(key) for key in ("roles", "sites", "disabled", "full_name")
+        )
         user = self._repository.change_user(
             name,
             roles=[Role(role) for role in roles] if isinstance(roles, list) else None,
+            sites=list(map(str, sites)) if isinstance(sites, list) else None,
+            at_all_sites=change.get("all_sites") is True,
             disabled=disabled if isinstance(disabled, bool) else None,
             full_name=full_name if isinstance(full_name, str) else None,
             by=self._by,
@@ -250,7 +291,12 @@ class _InDatabase:
         return [_token(token, self._access) for token in tokens]
 
     def add_token(
-        self, user: str | None, label: str, scope: Collection[str] | None, expires_time: str | None
+        self,
+        user: str | None,
+        label: str,
+        scope: Collection[str] | None,
+        sites: Collection[str] | None,
+        expires_time: str | None,
     ) -> Document:
         if user is None:
             raise CommandError("--user: expected whose token it is, which --config and --local do not tell")
@@ -263,6 +309,7 @@ class _InDatabase:
             label,
             digest_of(secret),
             scope=scope,
+            sites=sites,
             expires_ns=expires_ns,
             by=self._by,
             now_ns=now_ns,

@@ -16,7 +16,7 @@ from service.client.credentials import write_secret
 from service.client.rest_client import Document
 from service.client.verdicts import local_time
 
-FIELDS = ("id", "user", "label", "scope", "created_time", "expires_time", "used_time")
+FIELDS = ("id", "user", "label", "scope", "sites", "created_time", "expires_time", "used_time")
 
 
 def _scope(token: Document) -> str:
@@ -52,6 +52,7 @@ def add_token(
     *,
     user: str | None,
     scope: Collection[str] | None,
+    sites: Collection[str] | None,
     days: float | None,
     output: Path | None,
     local: bool,
@@ -63,7 +64,7 @@ def add_token(
     """
     expires = None if days is None else rfc3339(time.time_ns() + round(days * NANOSECONDS_PER_DAY))
     with directory(url, config, local=local) as users:
-        token = users.add_token(user, label, scope, expires)
+        token = users.add_token(user, label, scope, sites, expires)
     secret = str(token["token"])
     if output is not None:
         with failing_clearly(OSError):

@@ -14,7 +14,16 @@ from service.client.rest_client import Document
 from service.client.verdicts import local_time
 from service.storage.records import Role
 
-FIELDS = ("name", "full_name", "roles", "disabled", "has_password", "last_login_time", "last_login_origin")
+FIELDS = (
+    "name",
+    "full_name",
+    "roles",
+    "sites",
+    "disabled",
+    "has_password",
+    "last_login_time",
+    "last_login_origin",
+)
 
 
 def _words(key: str) -> Callable[[Document], str]:
@@ -24,6 +33,11 @@ def _words(key: str) -> Callable[[Document], str]:
 def _roles(user: Document) -> str:
     roles = user["roles"]
     return " ".join(map(str, roles)) if isinstance(roles, list) and roles else "-"
+
+
+def _sites(user: Document) -> str:
+    sites = user["sites"]
+    return "all" if not isinstance(sites, list) else one_line(", ".join(map(str, sites))) or "none"
 
 
 def _state(user: Document) -> str:
@@ -38,6 +52,7 @@ COLUMNS: Mapping[str, Callable[[Document], str | Text]] = {
     "name": _words("name"),
     "full name": _words("full_name"),
     "roles": _roles,
+    "sites": _sites,
     "logs in": _state,
     "last login": lambda user: (
         "-" if user["last_login_time"] is None else local_time(user["last_login_time"])
@@ -59,6 +74,7 @@ def add_user(
     name: str,
     roles: Collection[Role],
     *,
+    sites: Collection[str] | None,
     full_name: str | None,
     password_file: str | None,
     no_password: bool,
@@ -70,13 +86,13 @@ def add_user(
         raise CommandError("--no-password: expected it or --password-file, found both")
     password = None if no_password else given_password(password_file, f"password of {name}", again=True)
     with directory(url, config, local=local) as users:
-        user = users.add_user(name, roles, full_name, password)
+        user = users.add_user(name, roles, sites, full_name, password)
     told = "may log in (mcc login)"
     if no_password:
         told = "has no password; tokens are made on the service's machine (mcc token add --user --config)"
     elif user["password_set_by"] is not None:
         told = "may log in (mcc login), and changes the password first (mcc password)"
-    _say(f"user {user['name']}: {_roles(user)}; {told}", user, as_json=as_json)
+    _say(f"user {user['name']}: {_roles(user)}{_where(user)}; {told}", user, as_json=as_json)
 
 
 def change_user(
@@ -86,6 +102,8 @@ def change_user(
     *,
     roles: Sequence[Role] | None,
     no_roles: bool,
+    sites: Sequence[str] | None,
+    all_sites: bool,
     full_name: str | None,
     disabled: bool | None,
     local: bool,
@@ -93,13 +111,23 @@ def change_user(
 ) -> None:
     """Change what is given of a user. Raises CommandError."""
     wanted = sorted(roles) if roles else [] if no_roles else None
-    change = {"roles": wanted, "full_name": full_name, "disabled": disabled}
+    if sites and all_sites:
+        raise CommandError("--all-sites: expected it or --site, found both")
+    change = {
+        "roles": wanted,
+        "sites": sorted(sites) if sites else None,
+        "all_sites": all_sites or None,
+        "full_name": full_name,
+        "disabled": disabled,
+    }
     given = {key: value for key, value in change.items() if value is not None}
     if not given:
-        raise CommandError("expected --role, --no-roles, --full-name, --disable or --enable, found none")
+        raise CommandError(
+            "expected --role, --no-roles, --site, --all-sites, --full-name, --disable or --enable, found none"
+        )
     with directory(url, config, local=local) as users:
         user = users.change_user(name, given)
-    _say(f"user {user['name']}: {_roles(user)}; {_state(user)}", user, as_json=as_json)
+    _say(f"user {user['name']}: {_roles(user)}{_where(user)}; {_state(user)}", user, as_json=as_json)
 
 
 def set_password(
@@ -140,6 +168,10 @@ def delete_user(url: str, config: Path | None, name: str, *, local: bool, as_jso
     with directory(url, config, local=local) as users:
         users.delete_user(name)
     _say(f"user {name}: deleted, with sessions and tokens", {}, as_json=as_json)
+
+
+def _where(user: Document) -> str:
+    return "" if user["sites"] is None else f" at {_sites(user)}"
 
 
 def _say(text: str, document: Document, *, as_json: bool) -> None:

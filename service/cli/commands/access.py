@@ -12,6 +12,10 @@ commands = typer.Typer()
 
 Name = Annotated[str, typer.Argument(metavar="NAME", help="The user's name.")]
 Roles = Annotated[list[Role] | None, typer.Option("--role", help="A role; give several for more.")]
+Sites = Annotated[
+    list[str] | None,
+    typer.Option("--site", metavar="SITE", help="A site where the roles hold (default: all); repeatable."),
+]
 FullName = Annotated[str | None, typer.Option(metavar="TEXT", help="What people call them.")]
 PasswordFile = Annotated[
     str | None,
@@ -149,6 +153,7 @@ def list_users(
 def add_user(
     name: Name,
     role: Roles = None,
+    site: Sites = None,
     url: Url = DEFAULT_URL,
     config: Config = None,
     full_name: FullName = None,
@@ -171,6 +176,7 @@ def add_user(
         config,
         name,
         role or [],
+        sites=site or None,
         full_name=full_name,
         password_file=password_file,
         no_password=no_password,
@@ -183,10 +189,12 @@ def add_user(
 def change_user(
     name: Name,
     role: Roles = None,
+    site: Sites = None,
     url: Url = DEFAULT_URL,
     config: Config = None,
     full_name: FullName = None,
     *,
+    all_sites: Annotated[bool, typer.Option("--all-sites", help="Their roles hold at all sites.")] = False,
     no_roles: Annotated[bool, typer.Option("--no-roles", help="Take all roles away.")] = False,
     disabled: Annotated[
         bool | None, typer.Option("--disable/--enable", help="Keep them out, or let them in again.")
@@ -194,7 +202,7 @@ def change_user(
     local: Local = False,
     as_json: Json = False,
 ) -> None:
-    """Give a user other roles or another full name, or keep them out; other roles end their sessions.
+    """Give a user other roles, sites or another name, or keep them out; other roles end their sessions.
 
     The role SECAUD is given with --config FILE, and the user then needs a new password.
     """
@@ -206,6 +214,8 @@ def change_user(
         name,
         roles=role,
         no_roles=no_roles,
+        sites=site,
+        all_sites=all_sites,
         full_name=full_name,
         disabled=disabled,
         local=local,
@@ -301,6 +311,10 @@ def add_token(
         list[str] | None,
         typer.Option(metavar="PERMISSION", help="A permission it has (default: all that you have)."),
     ] = None,
+    site: Annotated[
+        list[str] | None,
+        typer.Option("--site", metavar="SITE", help="A site where it holds (default: all of yours)."),
+    ] = None,
     days: Annotated[
         float | None,
         typer.Option(min=0.001, max=36_500, help="So long it is taken (default: as long as it may)."),
@@ -327,6 +341,7 @@ def add_token(
         label,
         user=user,
         scope=scope or None,
+        sites=site or None,
         days=days,
         output=output,
         local=local,

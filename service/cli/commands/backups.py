@@ -52,6 +52,31 @@ def backup(
 
 
 @commands.command()
+def purge(
+    config: Config = None,
+    audit: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE", help="Export the audit trail into this file first, to be kept elsewhere."
+        ),
+    ] = None,
+    *,
+    without_audit: Annotated[
+        bool, typer.Option("--without-audit", help="Let the audit trail go, too.")
+    ] = False,
+    backups: Annotated[bool, typer.Option("--backups", help="Delete the back-ups, too.")] = False,
+    yes: Annotated[bool, typer.Option("--yes", help="Do not ask for the name of the directory.")] = False,
+    as_json: Json = False,
+) -> None:
+    """Delete all that a service keeps of its plant, for good; the service has to be stopped."""
+    from service.cli.backup.purge import purge as purge_plant
+
+    if (audit is None) is not without_audit:
+        raise typer.BadParameter("expected one of --audit FILE and --without-audit")
+    purge_plant(config, audit=audit, backups=backups, is_confirmed=yes, as_json=as_json)
+
+
+@commands.command()
 def restore(
     backup: Annotated[
         Path, typer.Argument(metavar="BACKUP", help="A back-up, or a directory of them: its latest one.")

@@ -81,6 +81,7 @@ def _kept(account: Account) -> tuple[object, ...]:
     return (
         account.created_ns,
         account.roles,
+        account.sites,
         account.disabled,
         account.password_set_ns,
         account.sessions_ended_ns,
@@ -122,6 +123,11 @@ class ServiceUsers(UserManager):  # type: ignore[misc]
             user = PlantUser(UserRole.User, account.name, account, address)
             if account.must_change_password:
                 told.warning("a client is not let in", reason="somebody else set the password (mcc password)")
+                raise ServiceError(ua.StatusCodes.BadUserAccessDenied)
+            if account.sites is not None:
+                told.warning(
+                    "a client is not let in", reason="the user has some sites, this server shows all"
+                )
                 raise ServiceError(ua.StatusCodes.BadUserAccessDenied)
             if not user.may(Permission.VIEW):
                 raise ServiceError(ua.StatusCodes.BadUserAccessDenied)

@@ -17,7 +17,8 @@ BOTH_ROLES: Final = "roles LIKE '%SECADM%' AND roles LIKE '%SECAUD%'"
 class UserRow(Base):
     """Somebody who may log in, or whose tokens may be used.
 
-    name: in lower case. roles: their names, with spaces between. password: an Argon2 hash; None where nobody
+    name: in lower case. roles: their names, with spaces between. sites: where the roles hold; None: at all.
+    password: an Argon2 hash; None where nobody
     can log in with one. subject: who an identity provider says it is, with the provider before it.
     password_set_by: who else gave them their password, until they change it. sessions_ended_ns: when somebody
     ended all of their sessions, also those that are no rows here. confirmed_ns: when the identity provider
@@ -31,6 +32,7 @@ class UserRow(Base):
     name: Mapped[str] = mapped_column(String(100), primary_key=True)
     full_name: Mapped[str | None]
     roles: Mapped[str]
+    sites: Mapped[tuple[str, ...] | None]
     password: Mapped[str | None]
     subject: Mapped[str | None] = mapped_column(String(600), unique=True)
     disabled: Mapped[bool]
@@ -87,6 +89,7 @@ class LoginLinkRow(Base):
 class ApiTokenRow(Base):
     """A secret of a user for a program. scope: permissions, with spaces between; None for all of the user.
 
+    sites: where it holds, of those of the user; None for all of them.
     parent: the token that asked for this one, and with which it ends; None where a person did.
     """
 
@@ -97,6 +100,7 @@ class ApiTokenRow(Base):
     label: Mapped[str]
     digest: Mapped[str] = mapped_column(String(64), unique=True)
     scope: Mapped[str | None]
+    sites: Mapped[tuple[str, ...] | None]
     parent: Mapped[str | None] = mapped_column(ForeignKey("api_tokens.id", ondelete="CASCADE"), index=True)
     created_ns: Mapped[int]
     expires_ns: Mapped[int | None]

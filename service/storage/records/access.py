@@ -9,7 +9,8 @@ from service.roles import Role
 class User:
     """Somebody who may log in.
 
-    has_password: False where nobody can log in with one. subject: who an identity provider says it is.
+    sites: where the roles hold; None: at all of them. has_password: False where nobody can log in with one.
+    subject: who an identity provider says it is.
     password_set_by: who else gave them their password, until they change it. sessions_ended_ns: when somebody
     ended all of their sessions. confirmed_ns: when the identity provider last let them in.
     second_factor_ns: since when they have one.
@@ -18,6 +19,7 @@ class User:
     name: str
     full_name: str | None
     roles: frozenset[Role]
+    sites: frozenset[str] | None
     disabled: bool
     has_password: bool
     subject: str | None
@@ -67,6 +69,7 @@ class UserSession:
 class ApiToken:
     """A secret of a user for a program, without the secret. scope: None for all that the user may.
 
+    sites: where it holds, of those of the user; None for all of them.
     parent: the token that asked for this one, and with which it ends; None where a person did.
     """
 
@@ -74,6 +77,7 @@ class ApiToken:
     user: str
     label: str
     scope: frozenset[str] | None
+    sites: frozenset[str] | None
     parent: str | None
     created_ns: int
     expires_ns: int | None

@@ -53,11 +53,13 @@ from service.storage.repository.relays.links import LinkRows
 from service.storage.repository.relays.quarantines import QuarantineRows
 from service.storage.repository.relays.remote_records import RemoteRecordRows
 from service.storage.repository.relays.reports import RelayReportRows
+from service.storage.repository.sites import SiteRows
 from service.storage.repository.state_counts import StateCounts
 
 
 class Repository(
     PlantRows,
+    SiteRows,
     LinkRows,
     FindingsRows,
     LeaseRows,

@@ -1,9 +1,10 @@
 """Transactions, and the step from table rows to plain values."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
+from copy import copy
 from dataclasses import fields
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, Self, TypeVar
 
 from sqlalchemy import ColumnElement, Engine, Row, Select, func, select, text, tuple_
 from sqlalchemy.orm import InstrumentedAttribute, Session
@@ -12,6 +13,7 @@ from service.storage.engine import WRITES, busy_timeout_s_of
 from service.storage.errors import NotFoundError
 from service.storage.models import Base, IedRow, MotorRow
 from service.storage.records import Cursor, Page
+from service.storage.repository.bounded_session import BoundedSession
 from service.storage.repository.counting_session import CountingSession
 from service.storage.repository.nearest_name import nearest_name
 from service.storage.repository.turns import Turns
@@ -40,6 +42,17 @@ class Sessions:
         self._writing = engine.execution_options(**{WRITES: True})
         self._busy_timeout_s = busy_timeout_s_of(engine.get_execution_options())
         self._turns = Turns(self._busy_timeout_s) if engine.dialect.name == "sqlite" else None
+        self._sites: Collection[str] | None = None
+
+    def within(self, sites: Collection[str] | None) -> Self:
+        """Return the same repository for who may see these sites alone; None: all of them.
+
+        What is read is bounded. What is written is not, because writers look at all rows to keep them right:
+        whoever lets somebody write asks before whether it is at one of their sites.
+        """
+        bounded = copy(self)
+        bounded._sites = sites  # noqa: SLF001 - the copy is ours
+        return bounded
 
     def check(self) -> None:
         """Make one round trip to the database. Raises SQLAlchemyError when it does not answer."""
@@ -48,7 +61,8 @@ class Sessions:
 
     @contextmanager
     def _read(self) -> Iterator[Session]:
-        with Session(self._reading) as session:
+        sites = self._sites
+        with Session(self._reading) if sites is None else BoundedSession(self._reading, sites) as session:
             yield session
 
     @contextmanager
@@ -112,7 +126,8 @@ def rows_of(session: Session, query: Select[*tuple[Any, ...]]) -> Sequence[Row[*
     longer than the database does: a thousand rows of eight columns come in half the time.
     """
     has_objects = any(isinstance(one["type"], type) for one in query.column_descriptions)
-    return (session if has_objects else session.connection()).execute(query).all()
+    is_whole = has_objects or isinstance(session, BoundedSession)  # a connection knows no bounds
+    return (session if is_whole else session.connection()).execute(query).all()
 
 
 def page_of(

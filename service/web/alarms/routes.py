@@ -70,7 +70,7 @@ def acknowledge_alarms(
     chosen = [only] if only else alarm or []
     wanted = document_of_form(AcknowledgementRequest, {"alarms": chosen, "comment": comment.strip()})
     try:
-        done = people.acknowledge_alarms(view.context, view.asking.actor, wanted)
+        done = people.acknowledge_alarms(view.context, view.asking, wanted)
     except ProblemError as error:
         if error.status is not HTTPStatus.CONFLICT:
             raise

@@ -9,6 +9,7 @@ from markupsafe import Markup
 
 from core.condition.kinds import State
 from core.units import NANOSECONDS_PER_DAY, NANOSECONDS_PER_SECOND
+from service.access.reach import Sites
 from service.configuration.settings import Settings
 from service.pictures.looks import PAGE
 from service.pictures.sparkline import SparkPoint, sparkline
@@ -80,6 +81,10 @@ class WrittenPart:
     def text(self) -> str:
         """Return both."""
         return self.summary + self.motors
+
+
+MOST_FLEETS = 20
+"""So many sets of sites are kept in sight at a time."""
 
 
 class Fleet:
@@ -156,6 +161,27 @@ class Fleet:
             for name, row in due.items()
         }
         self._pictures = {row.name: drawn.get(row.name) or kept[row.name] for row in rows}
+
+
+class Fleets:
+    """The fleet as those see it who may see some sites, or all. Safe to share between threads."""
+
+    def __init__(self, repository: Repository, settings: Settings) -> None:
+        self._repository = repository
+        self._settings = settings
+        self._lock = Lock()
+        self._fleets: dict[Sites, Fleet] = {}
+
+    def at(self, sites: Sites) -> Fleet:
+        """Return the fleet at these sites; the ones that were asked for last are kept."""
+        with self._lock:
+            fleet = self._fleets.pop(sites, None)
+            if fleet is None:
+                fleet = Fleet(self._repository.within(sites), self._settings)
+            self._fleets[sites] = fleet
+            for over in list(self._fleets)[:-MOST_FLEETS]:
+                del self._fleets[over]
+            return fleet
 
 
 def _version_of(picture: _Picture | None) -> int | None:

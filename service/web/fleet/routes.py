@@ -12,7 +12,7 @@ from service.api.access.requirements import require
 from service.api.context import ApiContext
 from service.api.problems import WrongFieldError
 from service.web.fleet.filters import LONGEST, FleetFilter
-from service.web.fleet.fleet import DAYS, Fleet, FleetView, WrittenPart
+from service.web.fleet.fleet import DAYS, Fleet, Fleets, FleetView, WrittenPart
 from service.web.fleet.rows import FleetRow, counts, digest
 from service.web.fleet.states import FleetState
 from service.web.live.routes import live_address, live_of
@@ -27,7 +27,7 @@ router = APIRouter()
 
 def install_fleet(app: FastAPI, context: ApiContext) -> None:
     """Give an application its view of the fleet."""
-    app.state.fleet = Fleet(context.repository, context.settings)
+    app.state.fleet = Fleets(context.repository, context.settings)
 
 
 @router.get("/", include_in_schema=False, dependencies=[require(Permission.VIEW)])
@@ -40,7 +40,7 @@ def get_fleet(
     """Show all motors in service, those that need attention first."""
     wanted = FleetFilter(site or None, _state_of(state), " ".join(text.split()))
     request = view.request
-    fleet = _fleet_of(request)
+    fleet = _fleets_of(request).at(view.asking.sites)
     stamp = live_of(request.app).changes.stamps([TOPIC])[TOPIC]
 
     def write(found: FleetView) -> WrittenPart:
@@ -97,8 +97,8 @@ def _state_of(text: str | None) -> FleetState | None:
         raise WrongFieldError("query.state", f"expected one of {expected}, found {text[:50]!r}") from error
 
 
-def _fleet_of(request: Request) -> Fleet:
-    fleet = request.app.state.fleet
-    if not isinstance(fleet, Fleet):
+def _fleets_of(request: Request) -> Fleets:
+    fleets = request.app.state.fleet
+    if not isinstance(fleets, Fleets):
         raise TypeError("the application was not made by create_site")
-    return fleet
+    return fleets

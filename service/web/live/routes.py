@@ -18,6 +18,7 @@ from service.api.access.requirements import require
 from service.api.context import ApiContext, Context
 from service.api.problems import BusyError, WrongFieldError
 from service.storage.repository.overviews.change_stamps import Subject
+from service.storage.repository.sites import AtSite
 from service.timing.database_silence import does_not_answer
 from service.web.addresses import address
 from service.web.live.bus import LiveBus
@@ -89,6 +90,8 @@ async def get_live(
         topics = list(dict.fromkeys(map(topic_of, topic)))
     except ValueError as error:
         raise WrongFieldError("query.topic", str(error)) from error
+    motors = [one.motor for one in topics if one.motor is not None]
+    await run_in_threadpool(asking.demand_here, context.repository, AtSite.MOTOR, *motors)
     live = live_of(request.app)
     most = max(context.settings.max_connections // 2, 1)
     if live.bus.streams >= most:

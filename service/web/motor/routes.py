@@ -18,6 +18,7 @@ from service.api.document import Name
 from service.api.problems import ProblemError
 from service.api.recordings.diagnoses import queue_diagnosis
 from service.api.recordings.diagnosis_schemas import DiagnosisRequest
+from service.storage.repository.sites import AtSite
 from service.web.addresses import address
 from service.web.forms import document_of_form
 from service.web.live.routes import live_address
@@ -99,6 +100,7 @@ def record_motor(
 @router.post("/motors/{name}/diagnoses", dependencies=[require(Permission.RECORDINGS)])
 def diagnose_again(view: Looking, name: Name, recording: Annotated[UUID, Form()]) -> Response:
     """Diagnose a recording again; its motor's condition follows."""
+    view.asking.demand_here(view.context.repository, AtSite.RECORDING, str(recording))
     queue_diagnosis(view.context, view.asking.actor, str(recording), DiagnosisRequest())
     return _done(view, name, "diagnosis-requested")
 

@@ -17,7 +17,7 @@ from service.api.problems import WrongFieldError
 from service.storage import NotFoundError
 from service.web.forms import document_of_form
 from service.web.people.token_form import TokenForm, show_new_token, token_request
-from service.web.people.users import MOST_SHOWN, lifetimes, scope_choices, token_lines
+from service.web.people.users import MOST_SHOWN, lifetimes, scope_choices, site_names, token_lines
 from service.web.view import Looking
 
 router = APIRouter()
@@ -47,6 +47,7 @@ def show_account(view: Looking) -> Response:
         meanings=[(one.value, MEANINGS[one]) for one in account.permissions],
         tokens=token_lines(view.context, found, now_ns=view.now_ns),
         scopes=scope_choices(asking.permissions),
+        sites=[one for one in site_names(repository) if asking.sites is None or one in asking.sites],
         lifetimes=lifetimes(view.context.settings.access),
         rule=PASSWORD_RULE,
     )

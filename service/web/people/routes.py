@@ -9,7 +9,7 @@ from starlette.responses import Response
 from service.access.permissions import Permission
 from service.api.access import tokens, users
 from service.api.access.requirements import require
-from service.api.access.schemas import NewPassword, UserChange, UserName, UserRequest
+from service.api.access.schemas import MOST_SITES, NewPassword, UserChange, UserName, UserRequest
 from service.storage.records import Role
 from service.web.addresses import address
 from service.web.forms import document_of_form
@@ -18,6 +18,7 @@ from service.web.people.users import (
     lines_of,
     people,
     roles,
+    site_names,
     token_lines,
 )
 from service.web.view import Looking, View
@@ -28,6 +29,7 @@ USERS: Final = [require(Permission.USERS)]
 
 CursorText = Annotated[str | None, Query(max_length=1000)]
 Roles = Annotated[list[Role] | None, Form(max_length=len(Role))]
+Sites = Annotated[list[str] | None, Form(max_length=MOST_SITES)]
 FullName = Annotated[str, Form(max_length=200)]
 Secret = Annotated[str, Form(max_length=2000)]
 
@@ -36,7 +38,8 @@ Secret = Annotated[str, Form(max_length=2000)]
 def show_people(view: Looking, cursor: CursorText = None, tokens_cursor: CursorText = None) -> Response:
     """Show the users and the tokens of all."""
     found = people(view.context, cursor=cursor, tokens_cursor=tokens_cursor, now_ns=view.now_ns)
-    return view.page("people/list.html", title="People", found=found)
+    known = site_names(view.context.repository)
+    return view.page("people/list.html", title="People", found=found, sites=known)
 
 
 @router.post("/people", dependencies=USERS)
@@ -46,11 +49,12 @@ async def add_user(
     name: Annotated[str, Form(max_length=200)] = "",
     full_name: FullName = "",
     roles: Roles = None,
+    sites: Sites = None,
     password: Secret = "",
 ) -> Response:
     """Make a user."""
     fields = {"name": name, "full_name": full_name.strip(), "password": password}
-    wanted = document_of_form(UserRequest, {**fields, "roles": roles or []})
+    wanted = document_of_form(UserRequest, {**fields, "roles": roles or [], "sites": sites or None})
     user = await users.add_user(view.context, request, Response(), wanted, view.asking.actor)
     return view.done(address("/people", user.name), "user-added")
 
@@ -68,6 +72,7 @@ def show_user(view: Looking, name: UserName) -> Response:
         line=line,
         tokens=token_lines(view.context, found, now_ns=view.now_ns),
         roles=roles(),
+        sites=sorted({*site_names(repository), *(user.sites or ())}),
         is_self=name == view.asking.actor.name,
     )
 
@@ -78,10 +83,18 @@ def change_user(
     name: UserName,
     full_name: FullName = "",
     roles: Roles = None,
+    sites: Sites = None,
+    all_sites: Annotated[bool, Form()] = False,
     disabled: Annotated[bool, Form()] = False,
 ) -> Response:
-    """Change a user's name or roles, disable or enable them."""
-    fields = {"full_name": full_name.strip(), "roles": roles or [], "disabled": disabled}
+    """Change a user's name, roles or sites, disable or enable them."""
+    fields = {
+        "full_name": full_name.strip(),
+        "roles": roles or [],
+        "sites": sites or None,
+        "all_sites": all_sites,
+        "disabled": disabled,
+    }
     users.change_user(view.context, name, document_of_form(UserChange, fields), view.asking.actor)
     return _done(view, name, "user-changed")
 

@@ -5,7 +5,7 @@ from starlette.responses import Response
 
 from core.units import NANOSECONDS_PER_DAY
 from service.access.permissions import Permission
-from service.api.access.schemas import NewToken, TokenRequest
+from service.api.access.schemas import MOST_SITES, NewToken, TokenRequest
 from service.api.times import rfc3339
 from service.web.forms import document_of_form
 from service.web.view import View
@@ -14,20 +14,27 @@ from service.web.view import View
 class TokenForm(BaseModel):
     """What a new token is for. scope: what it may do, all that its user may where nothing is chosen.
 
-    days: how long it may be used; None without an end.
+    sites: where it holds, at all of its user where nothing is chosen. days: how long it may be used; None
+    without an end.
     """
 
     model_config = ConfigDict(extra="forbid")
 
     label: str = Field(default="", max_length=500)
     scope: list[Permission] = Field(default_factory=list, max_length=len(Permission))
+    sites: list[str] = Field(default_factory=list, max_length=MOST_SITES)
     days: int | None = Field(default=None, ge=1, le=3650)
 
 
 def token_request(form: TokenForm, now_ns: int) -> TokenRequest:
     """Return the request that the API takes. Raises RequestValidationError."""
     expires = None if form.days is None else rfc3339(now_ns + form.days * NANOSECONDS_PER_DAY)
-    fields = {"label": form.label, "scope": form.scope or None, "expires_time": expires}
+    fields = {
+        "label": form.label,
+        "scope": form.scope or None,
+        "expires_time": expires,
+        "sites": form.sites or None,
+    }
     return document_of_form(TokenRequest, fields)
 
 

@@ -8,9 +8,11 @@ from core.units import NANOSECONDS_PER_DAY
 from service.access.identities import idle_since_ns, oldest_session_ns
 from service.access.permissions import MEANINGS, PERMISSIONS_OF, Permission
 from service.access.tokens import as_it_counts
+from service.api.access.schemas import MOST_SITES
 from service.api.context import ApiContext
 from service.api.pages import decode, encode
 from service.configuration.access import AccessSettings
+from service.storage import Repository
 from service.storage.records import ApiToken, Role, User
 from service.web.addresses import address
 
@@ -55,7 +57,8 @@ class TokenLine:
     @property
     def scope(self) -> str:
         """Return what it may do."""
-        return "all that its user may" if self.token.scope is None else ", ".join(sorted(self.token.scope))
+        may = "all that its user may" if self.token.scope is None else ", ".join(sorted(self.token.scope))
+        return may if self.token.sites is None else f"{may}, at {', '.join(sorted(self.token.sites))}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,6 +127,11 @@ def roles() -> Sequence[RoleWords]:
     return [
         RoleWords(role, [MEANINGS[one] for one in Permission if one in PERMISSIONS_OF[role]]) for role in Role
     ]
+
+
+def site_names(repository: Repository) -> Sequence[str]:
+    """Return the names of the plant's sites."""
+    return [site.name for site in repository.sites(limit=MOST_SITES).items]
 
 
 def scope_choices(permissions: Collection[Permission]) -> Sequence[tuple[Permission, str]]:

@@ -69,8 +69,9 @@ def _list(
     refused: Refused | None = None,
 ) -> Response:
     """Return the list. refused: files that were brought and not taken. Raises NotFoundError, ProblemError."""
-    repository = view.context.repository
-    view.context.require_motor(motor)
+    context = view.context.within(view.asking.sites)  # also where a form that changes something shows it
+    repository = context.repository
+    context.require_motor(motor)
     state = next((one for one in RecordingState if one == show), None)
     operation = None if state is not None else next((one for one in Operation if one == show), None)
     if show is not None and state is None and operation is None:
@@ -121,7 +122,7 @@ async def bring_recording(
         return await run_in_threadpool(_list, view, motor, refused=refused)
     try:
         async with context.uploads.admitted():
-            added, _ = await run_in_threadpool(store_upload, context, view.asking.actor, motor, given)
+            added, _ = await run_in_threadpool(store_upload, context, view.asking, motor, given)
     except ProblemError as error:
         about_files = [one.message for one in error.errors or () if one.location == "body.files"]
         if not about_files:

@@ -136,3 +136,27 @@ def test_a_secret_is_its_owners_alone(tmp_path: Path, mode: int) -> None:
         read_secret(path)
     path.chmod(0o400)
     assert read_secret(path) == b"hidden"
+
+
+def test_a_credential_of_a_unit_shows_its_mask_as_the_group(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("mms.security.credential_files._FROM_SYSTEMD", tmp_path / "credentials")
+    unit = tmp_path / "credentials" / "statorwatch.service"
+    unit.mkdir(parents=True)
+    for path, refused in (
+        (unit / "A1_SEL710", False),
+        (tmp_path / "A1_SEL710", True),
+        (unit / ".." / ".." / "A1_SEL710", True),
+    ):
+        path.unlink(missing_ok=True)
+        path.write_text("hidden")
+        path.chmod(0o440)
+        if refused:
+            with pytest.raises(CredentialFileError, match="found mode 440"):
+                read_secret(path)
+        else:
+            assert read_secret(path) == b"hidden"
+    (unit / "A1_SEL710").chmod(0o444)
+    with pytest.raises(CredentialFileError, match="found mode 444"):
+        read_secret(unit / "A1_SEL710")

@@ -54,6 +54,7 @@ def token_of(row: ApiTokenRow) -> ApiToken:
         user=row.user,
         label=row.label,
         scope=None if row.scope is None else frozenset(row.scope.split()),
+        sites=None if row.sites is None else frozenset(row.sites),
         parent=row.parent,
         created_ns=row.created_ns,
         expires_ns=row.expires_ns,
@@ -67,9 +68,15 @@ def token_document(token: ApiToken) -> dict[str, object]:
         "user": token.user,
         "label": token.label,
         "scope": None if token.scope is None else sorted(token.scope),
+        "sites": None if token.sites is None else sorted(token.sites),
         "parent": token.parent,
         "expires_ns": token.expires_ns,
     }
+
+
+def site_names(sites: Iterable[str] | None) -> tuple[str, ...] | None:
+    """Return sites as their column has them."""
+    return None if sites is None else tuple(sorted(set(sites)))
 
 
 def scope_words(scope: Iterable[str] | None) -> str | None:

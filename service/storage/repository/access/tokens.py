@@ -19,6 +19,7 @@ from service.storage.records import Actor, ApiToken, Cursor, Page, User
 from service.storage.repository.access.ending import (
     end_tokens,
     scope_words,
+    site_names,
     token_document,
     token_of,
     with_descendants,
@@ -39,6 +40,7 @@ class TokenRows(Sessions):
         digest: str,
         *,
         scope: Iterable[str] | None,
+        sites: Iterable[str] | None = None,
         expires_ns: int | None,
         parent: str | None = None,
         by: Actor,
@@ -65,6 +67,7 @@ class TokenRows(Sessions):
                 label=label,
                 digest=digest,
                 scope=scope_words(scope),
+                sites=site_names(sites),
                 parent=parent,
                 created_ns=now_ns,
                 expires_ns=expires_ns,
@@ -157,3 +160,5 @@ def _require_no_wider(child: ApiToken, row: ApiTokenRow) -> None:
         raise WiderTokenError(parent.label, "lasts longer")
     if parent.scope is not None and (child.scope is None or not child.scope <= parent.scope):
         raise WiderTokenError(parent.label, "may do more")
+    if parent.sites is not None and (child.sites is None or not child.sites <= parent.sites):
+        raise WiderTokenError(parent.label, "is for more sites")

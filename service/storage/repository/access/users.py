@@ -21,6 +21,7 @@ from service.storage.repository.access.ending import (
     end_sessions,
     end_tokens,
     forget_second_factor,
+    site_names,
 )
 from service.storage.repository.access.failed_logins import account_key
 from service.storage.repository.audit.entries import note_change
@@ -75,12 +76,15 @@ class UserRows(Sessions):
         roles: Iterable[Role],
         *,
         password: str | None,
+        sites: Iterable[str] | None = None,
         full_name: str | None = None,
         subject: str | None = None,
         by: Actor,
         now_ns: int,
     ) -> User:
         """Add a user; password is a hash, which they change if somebody else chose it.
+
+        sites: where the roles hold; None: at all of them.
 
         Raises UserExistsError, RolesNotSeparateError, AuditorAccountError.
         """
@@ -94,6 +98,7 @@ class UserRows(Sessions):
                 name=name,
                 full_name=full_name,
                 roles=_words(wanted),
+                sites=site_names(sites),
                 subject=subject,
                 disabled=False,
                 created_ns=now_ns,
@@ -113,13 +118,16 @@ class UserRows(Sessions):
         name: str,
         *,
         roles: Iterable[Role] | None = None,
+        sites: Iterable[str] | None = None,
+        at_all_sites: bool = False,
         disabled: bool | None = None,
         full_name: str | None = None,
         by: Actor,
         now_ns: int,
     ) -> User:
-        """Change what is not None. Other roles end the user's sessions, being disabled their tokens, too.
+        """Change what is not None. Other roles or sites end sessions, being disabled tokens, too.
 
+        at_all_sites: have the roles hold everywhere from now on.
         Who becomes an auditor begins without a password, second factor and tokens: others may have them.
 
         Raises NotFoundError, LastAdministratorError, RolesNotSeparateError, AuditorAccountError.
@@ -135,6 +143,8 @@ class UserRows(Sessions):
                     forget_second_factor(session, row)
                     end_tokens(session, name, by=by, now_ns=now_ns)
                 row.roles = _words(wanted)
+            if at_all_sites or sites is not None:
+                row.sites = None if at_all_sites else site_names(sites)
             if disabled is not None:
                 row.disabled = disabled
             if full_name is not None:
@@ -143,7 +153,7 @@ class UserRows(Sessions):
             after = user_of(row)
             if _administers(before) and not _administers(after):
                 _require_administrator(session, name)
-            if after.roles != before.roles:
+            if (after.roles, after.sites) != (before.roles, before.sites):
                 end_sessions(session, name)
             if after.disabled:
                 end_all(session, name, by=by, now_ns=now_ns)
@@ -210,12 +220,21 @@ class UserRows(Sessions):
             session.delete(row)
 
     def user_of_subject(
-        self, subject: str, name: str, roles: Iterable[Role], *, full_name: str | None, by: Actor, now_ns: int
+        self,
+        subject: str,
+        name: str,
+        roles: Iterable[Role],
+        *,
+        sites: Iterable[str] | None = None,
+        full_name: str | None,
+        by: Actor,
+        now_ns: int,
     ) -> User:
         """Return who an identity provider says that somebody is, with the roles that it gives them now.
 
-        Whoever was never here becomes a user. Raises UserExistsError, where `name` is somebody else, and
-        RolesNotSeparateError.
+        Whoever was never here becomes a user. sites: where it lets them be; None: where they may be here.
+
+        Raises UserExistsError, where `name` is somebody else, and RolesNotSeparateError.
         """
         wanted = _words(_separate(name, roles))
         with self._write() as session:
@@ -231,9 +250,11 @@ class UserRows(Sessions):
                 action, before = AuditAction.USER_ADDED, None
             else:
                 action, before = AuditAction.USER_CHANGED, user_of(row)
-                if row.roles != wanted:
+                if row.roles != wanted or before.sites != _known(sites, before.sites):
                     row.roles = wanted
                     end_sessions(session, row.name)
+            if sites is not None:
+                row.sites = site_names(sites)
             row.full_name, row.confirmed_ns = full_name, now_ns
             session.flush()
             user = user_of(row)
@@ -276,6 +297,7 @@ def user_of(row: UserRow) -> User:
         name=row.name,
         full_name=row.full_name,
         roles=frozenset(map(Role, row.roles.split())),
+        sites=None if row.sites is None else frozenset(row.sites),
         disabled=row.disabled,
         has_password=row.password is not None,
         subject=row.subject,
@@ -295,6 +317,7 @@ def _document(user: User) -> dict[str, object]:
     return {
         "full_name": user.full_name,
         "roles": sorted(user.roles),
+        "sites": None if user.sites is None else sorted(user.sites),
         "disabled": user.disabled,
         "subject": user.subject,
     }
@@ -326,6 +349,11 @@ def _set_password(row: UserRow, password: str, *, by: Actor, now_ns: int) -> Non
     """Keep a password's hash, and who else knows it; the owner of the files could read all anyway."""
     row.password, row.password_set_ns = password, now_ns
     row.password_set_by = None if by.owns_files or by.name == row.name else by.name
+
+
+def _known(sites: Iterable[str] | None, before: frozenset[str] | None) -> frozenset[str] | None:
+    """Return the sites from now on, where an identity provider may tell them."""
+    return before if sites is None else frozenset(sites)
 
 
 def _words(roles: Iterable[Role]) -> str:
