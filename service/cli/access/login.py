@@ -70,6 +70,9 @@ def show_account(url: str, *, as_json: bool) -> None:
     may = " ".join(account["permissions"])
     results().print(Text(_who(account)), soft_wrap=True)
     results().print(Text(f"may: {may or 'nothing'}"), soft_wrap=True)
+    if account["sites"] is not None:
+        sites = one_line(", ".join(account["sites"]))
+        results().print(Text(f"at: {sites or 'no site'}"), soft_wrap=True)
 
 
 def change_password(url: str, *, old_file: str | None, new_file: str | None, as_json: bool) -> None:

@@ -217,6 +217,42 @@ def test_users_are_changed_and_deleted(
     assert "there is no user 'bert'" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("way", ["service", "database"])
+def test_users_may_be_limited_to_sites(
+    request: pytest.FixtureRequest, capsys: pytest.CaptureFixture[str], way: str
+) -> None:
+    if way == "service":
+        where = ("--url", str(request.getfixturevalue("service").base_url).rstrip("/"))
+    else:
+        where = ("--config", request.getfixturevalue("config"))
+
+    def sites() -> object:
+        users = json.loads(printed(capsys, "user", "list", "--json", *where))["users"]
+        return next(user["sites"] for user in users if user["name"] == "carl")
+
+    made = ("user", "add", "carl", "--role", "OPERATOR", "--no-password", "--site", "FACTORY_A")
+    assert "at FACTORY_A" in printed(capsys, *made, *where)
+    assert sites() == ["FACTORY_A"]
+    printed(capsys, "user", "change", "carl", "--site", "FACTORY_C", "--site", "FACTORY_A", *where)
+    assert sites() == ["FACTORY_A", "FACTORY_C"]
+    assert main(["user", "change", "carl", "--site", "FACTORY_A", "--all-sites", *where]) == 1
+    assert "--all-sites: expected it or --site, found both" in capsys.readouterr().err
+    printed(capsys, "user", "change", "carl", "--all-sites", *where)
+    assert sites() is None
+
+
+def test_a_token_tells_the_sites_where_it_holds(
+    service: httpx.Client, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    url = ("--url", str(service.base_url).rstrip("/"))
+    file = tmp_path / "reader.token"
+    scope = ("--scope", "view", "--scope", "account")
+    printed(capsys, "token", "add", "reader", *scope, "--site", "FACTORY_A", "--output", str(file), *url)
+    assert "at:" not in printed(capsys, "whoami", *url)
+    monkeypatch.setenv("MCC_TOKEN_FILE", str(file))
+    assert "at: FACTORY_A" in printed(capsys, "whoami", *url)
+
+
 def test_the_owner_of_the_files_makes_tokens_of_programs_alone(
     config: str, service: httpx.Client, password_file: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
