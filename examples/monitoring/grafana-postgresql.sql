@@ -6,7 +6,7 @@
 CREATE ROLE grafana LOGIN PASSWORD 'choose one' NOSUPERUSER NOCREATEDB NOCREATEROLE CONNECTION LIMIT 10;
 ALTER ROLE grafana SET default_transaction_read_only = on;
 ALTER ROLE grafana SET statement_timeout = '10s';
-GRANT SELECT ON motors, conditions, diagnoses, alarms, rotor_findings, supply_figures, swing_findings TO grafana;
+GRANT SELECT ON motors, conditions, diagnoses, alarms, rotor_findings, record_figures TO grafana;
 
 -- query: motors, for the variable $motor
 SELECT name FROM motors WHERE in_service ORDER BY name;

@@ -127,7 +127,7 @@ class TrendPoint(Document):
     state: State | RotorState | None = None
     kind: Kind | None = None
     phase: Literal["a", "b", "c"] | None = None
-    reasons: tuple[str, ...] | None = None
+    reasons: Listed[str] | None = None
 
 
 class BaselineRequest(RequestForSomebody):

@@ -1,6 +1,7 @@
 """A page of a trend, written without a model for each of its thousand points."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Final
 
 from fastapi import Response
 from pydantic_core import to_json
@@ -11,13 +12,26 @@ from service.api.times import rfc3339_of_all
 from service.storage.records import Page
 from service.storage.records.history import TrendPoint
 
+_BESIDE: Final[Mapping[Subject, Sequence[str]]] = {
+    Subject.CONDITION: ("state", "kind", "phase"),
+    Subject.ROTOR: ("state", "reasons"),
+    Subject.AIR_GAP: ("reasons",),
+    Subject.LOAD: ("reasons",),
+    Subject.SUPPLY: ("reasons",),
+}
+"""What is said beside figures of a subject, besides the verdict of the recording."""
+
 
 def trend_page(stored: Page[TrendPoint], quantity: str) -> Response:
     """Return the document of `Page[TrendPoint]`: models would take longer than the query and the text."""
     times = rfc3339_of_all([point.time_ns for point in stored.items])
     points: Iterable[Mapping[str, object]] = map(_point, stored.items, times)
-    if BY_NAME[quantity].subject is not Subject.STATOR:
-        points = map(_with_words, points, stored.items)
+    beside = _BESIDE.get(BY_NAME[quantity].subject, ())
+    if beside:
+        points = (
+            {**document, **{name: getattr(point, name) for name in beside}}
+            for document, point in zip(points, stored.items, strict=True)
+        )
     document = {
         "items": list(points),
         "next_cursor": None if stored.next is None else encode(stored.next),
@@ -35,8 +49,3 @@ def _point(point: TrendPoint, time: str) -> Mapping[str, object]:
         "verdict": point.verdict,
         "recording_id": point.recording_id,
     }
-
-
-def _with_words(document: Mapping[str, object], point: TrendPoint) -> Mapping[str, object]:
-    words = {"state": point.state, "kind": point.kind, "phase": point.phase, "reasons": point.reasons}
-    return {**document, **words}
