@@ -9,10 +9,10 @@ from math import log
 
 from core.classification.evidence import Block, log_sum, only
 from core.diagnosis.causes import Cause
+from core.normal_distribution import NORMAL_95
 
 EVEN_CAGE, UNEVEN_CAGES = 0.005, (0.02, 0.06, 0.18)
 """Asymmetry of a sound cage, rms (-46 dB), and of cages with broken bars: one of 28 has 0.034."""
-NORMAL_95 = 1.96
 
 
 def rotor_block(severity_dB: float | None, ci95: tuple[float, float] | None) -> Block | None:

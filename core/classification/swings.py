@@ -6,6 +6,7 @@ from typing import Final
 from core.classification.amplitude import log_ratio, ratio
 from core.classification.evidence import Block, log_sum, only
 from core.diagnosis.causes import Cause
+from core.normal_distribution import NORMAL_95
 from core.rotor.finding import LOAD_OSCILLATION, RotorFinding, RotorState
 from core.rotor.swing_findings import EVEN_GAP, STEADY_LOAD, EccentricityFinding, PulsationFinding
 
@@ -25,7 +26,7 @@ def eccentricity_block(finding: EccentricityFinding) -> Block | None:
     return only(
         Cause.ECCENTRICITY,
         log_ratio(value, deviation, EVEN_GAP, UNEVEN_GAPS),
-        f"the air gap's permeance ripples by {value:.1%} once a turn (+-{1.96 * deviation:.1%})",
+        f"the air gap's permeance ripples by {value:.1%} once a turn (+-{NORMAL_95 * deviation:.1%})",
     )
 
 

@@ -43,9 +43,9 @@ from core.machines.base import Array
 from core.machines.parameters import MachineParameters, Nameplate, WoundRotor
 from core.machines.plausibility import plausible_parameters
 from core.machines.typical import typical_parameters
+from core.normal_distribution import NORMAL_95
 from core.quantity_text import plain
 
-NORMAL_95 = 1.96
 LEAST_HALF_WIDTH = 0.05
 """Of an interval: no catalogue is of one motor alone."""
 SPLIT = 0.15

@@ -23,6 +23,7 @@ from core.machines.base import Array
 from core.machines.candidates import LoadLaw
 from core.machines.parameters import Motor
 from core.machines.wound_rotor import resistance_ratios, while_running
+from core.normal_distribution import NORMAL_95
 
 JUMP = 0.15
 """Growth of the logarithm of lambda within five cycles that only a step of the resistance makes: a motor that
@@ -39,7 +40,7 @@ FEWEST_CYCLES = 8.0
 LAWS = (LoadLaw.CONSTANT, LoadLaw.QUADRATIC)
 ROUNDS = 4
 """Fits of a load that depends on the speed that the fit finds."""
-UNIFORM, NORMAL_95 = 1.0 / sqrt(3.0), 1.96
+UNIFORM = 1.0 / sqrt(3.0)
 LEAST_LAMBDA = 1e-9
 MODEL_SHARE = 0.002
 """Standard deviation of the speed that the fit finds, over the synchronous one."""

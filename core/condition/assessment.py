@@ -7,13 +7,13 @@ from typing import Final, Literal
 from core.condition.kinds import Kind
 from core.diagnosis.phase_words import NAMED_PHASE
 from core.machines.winding_frame import Winding
+from core.normal_distribution import NORMAL_95
 from core.units import NANOSECONDS_PER_DAY
 
 Phase = Literal["a", "b", "c"]
 PHASES: Final[tuple[Phase, Phase, Phase]] = ("a", "b", "c")
 Phases = tuple[float, float, float]
 """Probability of each phase."""
-NORMAL_95: Final = 1.96
 
 STALE_AFTER_NS: Final = 7 * NANOSECONDS_PER_DAY
 """A condition whose latest record is older than this is stale, unless the caller knows better."""

@@ -6,9 +6,9 @@ from typing import Final
 from core.diagnosis.arrangements import LIKELY, Arranged, Arrangement
 from core.diagnosis.estimates import Interval
 from core.diagnosis.verdict import Verdict
+from core.normal_distribution import NORMAL_95
 from core.quality.finding import QualityFinding, finding
 
-NORMAL_95: Final = 1.96
 REFUSED: Final = {
     Arrangement.INSIDE_DELTA: (
         "the currents are those of the windings: the current transformers are inside the delta. Write "

@@ -19,9 +19,9 @@ from core.diagnosis.record_errors import HEALTHY
 from core.diagnosis.stator_evidence import CALLED, StatorEvidence, whatever_the_asymmetry
 from core.diagnosis.student_t import student_t_quantile
 from core.machines.base import Array
+from core.normal_distribution import NORMAL_95
 
 Interval = tuple[float, float]
-NORMAL_95: Final = 1.96
 ONE_OF_TEN: Final = 1.2816
 """Standard deviations above the least level that is called, at which nine of ten records call one."""
 PROBE_LEVEL: Final = 0.01

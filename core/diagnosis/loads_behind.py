@@ -17,6 +17,7 @@ from core.diagnosis.record_errors import Element, RecordErrors
 from core.diagnosis.signature import Signature
 from core.machines.parameters import Connection
 from core.machines.winding_frame import terminal_winding
+from core.normal_distribution import NORMAL_95
 
 LOADS: Final = (0.06, 0.2)
 """Usual currents of a load behind the relay, over the rated current of the motor."""
@@ -30,7 +31,6 @@ LOST: Final = (0.3, 1.0)
 LOST_ANGLE: Final = 0.02
 RATED_EFFICIENCY_POWER_FACTOR: Final = 0.75
 PHASES: Final = ("a", "b", "c")
-NORMAL_95: Final = 1.96
 
 
 @dataclass(frozen=True, slots=True)

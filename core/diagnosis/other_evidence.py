@@ -27,6 +27,7 @@ from core.diagnosis.signature import Signature
 from core.machines.base import Array
 from core.machines.parameters import Connection
 from core.machines.winding_frame import terminal_winding
+from core.normal_distribution import NORMAL_95
 from core.signals.terminals import VoltageChannels
 
 CHANNELS: Final = (0.025, 0.075)
@@ -228,8 +229,10 @@ def _other_parameters(_size: float, _deviation: float) -> str:
 
 
 def _drop(size: float, deviation: float) -> str:
-    return f"drop of {max(size, 0.0):.1%} (+-{1.96 * deviation:.1%}) of the rated voltage at rated current"
+    return (
+        f"drop of {max(size, 0.0):.1%} (+-{NORMAL_95 * deviation:.1%}) of the rated voltage at rated current"
+    )
 
 
 def _error(size: float, deviation: float) -> str:
-    return f"error of {size:+.1%} (+-{1.96 * deviation:.1%})"
+    return f"error of {size:+.1%} (+-{NORMAL_95 * deviation:.1%})"

@@ -11,6 +11,7 @@ from core.machines.base import Array
 from core.machines.parameters import Motor
 from core.machines.steady_state import ComplexArray
 from core.machines.wound_rotor import resistance_ratios
+from core.normal_distribution import NINE_IN_TEN, NORMAL_95
 from core.rotor.baseband import Baseband
 from core.rotor.cage_leakage import LEAST, MOST, USUAL, without_leakage
 from core.rotor.rotor_circuit import RotorLines, rotor_lines
@@ -37,9 +38,6 @@ HIGHEST_OVER_SUPPLY = 0.6
 """Highest distance of a line over the supply's frequency; near 1 the means over a cycle leave nothing."""
 FALSE_ALARM = 1e-4
 """Chance that noise alone passes for a line."""
-NINE_IN_TEN = 1.2816
-"""Quantile of the normal distribution."""
-NORMAL_95 = 1.96
 MODEL_SHARE = 0.05
 """Standard deviation of what a machine differs by from its linear model (saturation, deep bars), over the
 asymmetry."""

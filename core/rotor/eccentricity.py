@@ -15,6 +15,7 @@ import numpy as np
 
 from core.machines.base import Array
 from core.machines.parameters import Motor
+from core.normal_distribution import NINE_IN_TEN, NORMAL_95
 from core.rotor.baseband import Baseband
 from core.rotor.finding import decibels
 from core.rotor.ripples import Ripples, ripples
@@ -34,7 +35,6 @@ FEWEST_POLE_PAIRS = 2
 """With one pole pair the lines fall on the offset and on the second harmonic."""
 FALSE_ALARM = 1e-4
 """Chance that noise alone passes for a line."""
-NINE_IN_TEN, NORMAL_95 = 1.2816, 1.96
 """Quantiles of the normal distribution."""
 
 

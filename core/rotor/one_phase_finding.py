@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from math import hypot, log, sqrt
 
 from core.machines.base import Array
+from core.normal_distribution import NORMAL_95
 from core.rotor.finding import RotorState, decibels
 from core.rotor.one_phase import OnePhaseSidebands, one_phase_sidebands
 from core.signals.errors import SignalError
@@ -16,7 +17,6 @@ REPEATABILITY_DB = 1.0
 """Standard deviation of a level from record to record at the same speed, beside noise."""
 SEEN = 3.0
 """Amplitude of a sideband over the noise from which on there is one."""
-NORMAL_95 = 1.96
 DB_PER_NEPER = 20.0 / log(10.0)
 WATCH_AT_MOST = (
     "one phase tells neither a load that swings nor a supply that pulsates from broken bars: never more than "

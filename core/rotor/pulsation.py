@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from core.machines.base import Array
 from core.machines.parameters import Motor
+from core.normal_distribution import NINE_IN_TEN
 from core.rotor.baseband import Baseband
 from core.rotor.ripples import ripples
 from core.rotor.running_point import RunningPoint, errors, running_point
@@ -28,8 +29,6 @@ AROUND_TWICE_SLIP = (0.7, 1.5)
 """Places about twice the slip that are left out where the rotor may be uneven, over it."""
 AROUND_A_TURN = 0.05
 """The same about once a turn, over it, to either side."""
-NINE_IN_TEN = 1.2816
-"""Quantile of the normal distribution."""
 FINER = 4
 """Fineness of the search over the resolution of the record."""
 

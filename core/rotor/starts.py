@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from core.machines.air_gap import UNSETTLED_CYCLES, AirGap, positive_sequence
 from core.machines.base import Array
 from core.machines.parameters import MachineParameters
+from core.normal_distribution import NORMAL_95
 from core.rotor.finding import RotorState
 from core.rotor.start_finding import StartSideband
 
@@ -85,7 +86,7 @@ def start_sideband(gap: AirGap, machine: MachineParameters, run_up_s: float) -> 
     limit_dB = 10.0 * log10(ABOVE_NOISE * strongest)
     asymmetry = max(float(power[0]) - noise, 0.0)
     scatter = (2.0 * asymmetry * noise + noise**2) / (OVERLAPPING * len(fits))
-    error = 1.96 * sqrt(scatter)
+    error = NORMAL_95 * sqrt(scatter)
     is_seen = float(power[0]) >= ABOVE_NOISE * strongest
     low_dB = _decibels(asymmetry - error) if is_seen else None
     least_dB = None if low_dB is None else low_dB - READS_HIGH_dB

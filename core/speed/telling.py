@@ -4,12 +4,12 @@ from dataclasses import dataclass, replace
 from math import hypot, sqrt
 from typing import Final
 
+from core.normal_distribution import NORMAL_95
 from core.speed.finding import SpeedAlternative, SpeedFinding, SpeedSource, SpeedState
 from core.speed.memory import LineMemory
 from core.speed.record import SpeedRecord
 from core.speed.search import ALL_SLIPS, HIGHEST_SLIP, find_peak
 
-NORMAL_95: Final = 1.96
 MOST_CANDIDATES: Final = 8
 """Numbers of bars whose speeds are looked for; the likeliest where more are possible."""
 FEWEST_SEEN: Final = 0.5

@@ -2,14 +2,13 @@
 
 from dataclasses import asdict, dataclass
 from math import hypot
-from typing import Final
 
 from core.machines.parameters import MachineParameters
+from core.normal_distribution import NORMAL_95
 from core.rotor.start_finding import StartSideband
 from core.starts.figures import MotorStart
 
 Interval = tuple[float, float]
-NORMAL_95: Final = 1.96
 
 
 @dataclass(frozen=True, slots=True)

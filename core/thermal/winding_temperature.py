@@ -13,6 +13,7 @@ from math import hypot, pi, sqrt
 from core.condition.measuring.impedance import negative_impedance
 from core.condition.observation import Observation
 from core.machines.parameters import MachineParameters, Motor, ParameterTolerances
+from core.normal_distribution import NORMAL_95
 
 COPPER_ZERO_C = 234.5
 """Minus the temperature at which the resistance of copper would be zero (IEC 60034-1, 8.6.2) [degree C]."""
@@ -20,7 +21,6 @@ WIDEST_K = 30.0
 """Half the interval above which a temperature is not told: more than a class of insulation."""
 SENSORS_WANDER = 0.05
 """Share of the sensors' class by which a transformer's ratio changes between records."""
-NORMAL_95 = 1.96
 _STEP = 1e-4
 """Relative step of the numerical derivatives."""
 

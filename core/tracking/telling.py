@@ -6,6 +6,7 @@ from typing import Final
 import numpy as np
 
 from core.machines.base import Array
+from core.normal_distribution import NORMAL_95
 from core.thermal.winding_temperature import COPPER_ZERO_C
 from core.tracking.drift import FOLLOWED, possible_causes
 from core.tracking.finding import ParameterName, TrackedParameter, TrackedParameters, TrackingState
@@ -13,7 +14,6 @@ from core.tracking.follower import REFERENCE_RECORDS, Follower
 from core.tracking.record import LEAST_NOISE, distance_row
 from core.tracking.unknowns import Unknown
 
-NORMAL_95: Final = 1.96
 WIDEST: Final = np.array([0.15, 0.03, 0.03, 0.15])
 """Half intervals of R_s, L_sigma, L_M and R_R above which they are not told."""
 STANDING: Final = (Unknown.STATOR_RESISTANCE, Unknown.LEAKAGE, Unknown.MAGNETISING, Unknown.ROTOR_RESISTANCE)

@@ -7,11 +7,12 @@ import numpy as np
 
 from core.condition.events import Event, EventKind
 from core.machines.parameters import Motor
+from core.normal_distribution import NORMAL_95
 from core.tracking.drift import FOLLOWED
 from core.tracking.finding import ParameterName
 from core.tracking.follower import Follower
 from core.tracking.saving import document_of, follower_of
-from core.tracking.telling import NORMAL_95, tracked_parameters
+from core.tracking.telling import tracked_parameters
 from service.storage.records import FollowedStart, RecordObservation, TrackedPoint
 
 ANEW: Final = (EventKind.REWOUND, EventKind.REFERENCE_RESTARTED)

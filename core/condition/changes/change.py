@@ -7,7 +7,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from core.condition.assessment import NORMAL_95, Change, Level
+from core.condition.assessment import Change, Level
 from core.condition.changes.alarm import KINDS, Alarm, Weighing, by_kind
 from core.condition.changes.hypotheses import Cause, Hypotheses
 from core.condition.changes.size import size_of
@@ -19,6 +19,7 @@ from core.diagnosis.turns_place import axis_of, phases_of
 from core.machines.base import Array
 from core.machines.parameters import Connection, Motor
 from core.machines.winding_frame import Winding, terminal_winding
+from core.normal_distribution import NORMAL_95
 from core.signals.sequence import PhaseSequence
 
 

@@ -5,7 +5,6 @@ from typing import Any, Final
 
 import numpy as np
 
-from core.condition.assessment import NORMAL_95
 from core.condition.changes.evidence import along, learnt_without, of_size, signature
 from core.condition.changes.hypotheses import Hypotheses, Hypothesis
 from core.condition.changes.naming import SIZES
@@ -13,6 +12,7 @@ from core.condition.filter.change_bank import RAMP_LENGTH
 from core.condition.filter.state import Candidate, FilterState
 from core.machines.base import Array
 from core.machines.compiled import compiled_as_written as compiled
+from core.normal_distribution import NORMAL_95
 
 DRIFT_SHAPE: Final = 0.12
 """Relative standard deviation of the size of a change that drifts: no drift is a straight line."""

@@ -20,9 +20,10 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from core.condition.assessment import NORMAL_95, Level
+from core.condition.assessment import Level
 from core.condition.forecast.outcome import Forecast
 from core.condition.forecast.trends import filtered, onset, reached, scatter, smoothed
+from core.normal_distribution import NORMAL_95
 from core.units import NANOSECONDS_PER_DAY
 
 Array = NDArray[np.float64]

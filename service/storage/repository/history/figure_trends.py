@@ -1,13 +1,13 @@
 """The trend of each figure of the catalogue, and all figures of a subject, record by record."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from types import MappingProxyType
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
 from sqlalchemy import ColumnElement, String, case, null, select, type_coerce
 from sqlalchemy.orm import InstrumentedAttribute
 
-from core.condition.assessment import NORMAL_95
+from core.normal_distribution import NORMAL_95
 from core.quantities import BY_NAME, Quantity, Role, Subject, beside, of_subject
 from service.storage.models import (
     DiagnosisRow,
@@ -20,6 +20,7 @@ from service.storage.records import Cursor, Page
 from service.storage.records.history import SubjectPoint, TrendPoint
 from service.storage.repository.sessions import Order, Sessions, found, page_of, within
 
+Point = TypeVar("Point")
 Row = type[DiagnosisRow] | type[ObservationRow] | type[RotorFindingRow] | type[RecordFiguresRow]
 
 _ROWS: Final[Mapping[Subject, Row]] = MappingProxyType(
@@ -94,14 +95,14 @@ class FigureTrendRows(Sessions):
         motor: str,
         subject: Subject,
         columns: tuple[Any, ...],
-        to_point: Any,
+        to_point: Callable[..., Point],
         from_ns: int | None,
         to_ns: int | None,
         limit: int,
         after: Cursor | None,
         *,
         descending: bool = False,
-    ) -> Page[Any]:
+    ) -> Page[Point]:
         row = _ROWS[subject]
         time = _time(row)
         query = select(time, row.recording_id, *columns).where(
