@@ -8,8 +8,7 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
-from core.classification.record import classify_record
-from core.condition.measuring.observing import examine
+from core.findings.examining import examine
 from core.machines.motor_file.reader import read_motor
 from core.machines.parameters import Motor
 from core.recordings import Channel, Quantity, Recording, read
@@ -59,7 +58,7 @@ def simulated(motor: Motor) -> dict[str, MotorPlant]:
 
 def look_at(recording: Recording, motor: Motor) -> None:
     """Print the answer, the likelihoods, and what would tell where it is open."""
-    answer = classify_record(examine(recording, motor))
+    answer = examine(recording, motor).classification
     print(f"{answer.words} ({answer.answer.probability:.0%})")
     for one in answer.likelihoods[:3]:
         print(f"  {one.cause} {one.probability:.1%}: {one.figure}")

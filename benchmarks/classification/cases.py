@@ -7,9 +7,8 @@ from time import perf_counter
 import numpy as np
 
 from benchmarks.classification.outcomes import Outcome, outcome_of
-from core.classification.record import classify_record
-from core.condition.measuring.observing import examine
 from core.diagnosis.causes import PRIORS, Cause, Causes
+from core.findings.examining import examine
 from testing.machines.cause_records import CauseCase, Sizes
 from testing.machines.motors import LARGE, MEDIUM, REFERENCE
 
@@ -47,9 +46,8 @@ def answered(subject: Subject) -> Result:
         MOTORS[subject.motor], subject.causes, subject.load_level, subject.seed, drawn_sizes(subject.seed)
     )
     known, record = case.known(), case.record()
-    examined = examine(record, known)
     begun = perf_counter()
-    answer = classify_record(examined)
+    answer = examine(record, known).classification
     seconds = perf_counter() - begun
     outcome = outcome_of(answer, subject.causes)
     return Result(subject, outcome, answer.answer.causes, answer.is_told, seconds)

@@ -4,12 +4,11 @@ from collections import defaultdict
 
 from core.classification.classification import Classification
 from core.classification.motor import MOST_LOADS, MOST_RECORDS, MotorEvidence, classify_motor
-from core.classification.record import classify_record
 from core.classification.record_answer import RecordAnswer
 from core.condition.following.follower import Follower
 from core.condition.kinds import moves_impedance
-from core.condition.measuring.observing import examine
 from core.condition.verdict.verdict import verdict_of
+from core.findings.examining import examine
 from core.machines.parameters import Motor
 from core.recordings import Recording, RecordingError
 from core.rotor.finding import LOAD_OSCILLATION, RotorFinding, RotorState
@@ -51,7 +50,7 @@ class FollowedMotor:
     def take_record(self, recording: Recording) -> None:
         """Take in a record of the running motor."""
         examined = examine(recording, self._motor)
-        self._answers.append(RecordAnswer.from_dict(classify_record(examined).as_dict()))
+        self._answers.append(RecordAnswer.from_dict(examined.classification.as_dict()))
         self._take_cage(examined.rotor)
         if examined.observation is None:
             return

@@ -26,9 +26,8 @@ from benchmarks.accuracy.measured_records import (
 )
 from benchmarks.classification.cases import ONE_RECORD
 from benchmarks.reporting import Section, spread, table
-from core.classification.record import classify_record
-from core.condition.measuring.observing import examine
 from core.diagnosis.causes import IN_WORDS, PRIORS, Cause
+from core.findings.examining import examine
 from core.machines.parameters import Motor
 from core.recordings import Recording, RecordingError, read
 from testing.machines.cause_records import SOME_TIME_NS
@@ -73,7 +72,7 @@ def said_of(measured: Measured) -> Said:
         examined = examine(measured.recording, measured.motor, currents_only=measured.currents_only)
     except RecordingError:
         return Said(LACKING, {}, frozenset())
-    answer = classify_record(examined)
+    answer = examined.classification
     return Said(
         answer.words,
         {one.cause: one.probability for one in answer.likelihoods},

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from benchmarks.reporting import Section, rate_text, spread, table
 from benchmarks.rotor.cases import BARS, MOTORS
-from core.condition.measuring.observing import examine
 from core.diagnosis.causes import Cause
+from core.findings.examining import examine
 from core.rotor.finding import RotorFinding, RotorState
 from testing.machines.cause_records import CauseCase, Sizes
 from testing.machines.rotor_records import RotorCase

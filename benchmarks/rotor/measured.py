@@ -24,7 +24,7 @@ from benchmarks.accuracy.measured_records import (
     mill_samples,
 )
 from benchmarks.reporting import Section, mark, spread, table
-from core.condition.measuring.observing import examine
+from core.findings.examining import examine
 from core.machines.parameters import Motor
 from core.recordings import Recording, RecordingError, read
 from core.rotor.finding import RotorState

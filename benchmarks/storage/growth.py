@@ -17,7 +17,8 @@ from pathlib import Path
 
 from benchmarks.storage.forgetting import MOTORS, plant
 from benchmarks.storage.forgetting import fill as fill_measurements
-from core.condition.measuring.observing import Examined, examine
+from core.findings.examining import examine
+from core.findings.findings import Findings
 from core.machines.motor_file.reader import read_motor
 from core.recordings import read
 from service.condition.worker import fold_due
@@ -28,6 +29,7 @@ from service.recording_store.recording import StoredRecording
 from service.storage import Repository, connect, migrate
 from service.storage.records import RemoteRecord
 from testing.memory_folder import memory_folder
+from testing.service.findings import findings_of
 from testing.service.job_runner import RUNNER, register_runner
 from testing.service.plants import NOW_NS, SECOND_NS
 
@@ -61,7 +63,7 @@ def stored(number: int, directory: Path) -> StoredRecording:
     return StoredRecording(sha256(str(number).encode()).hexdigest(), files, directory.is_dir)
 
 
-def write_records(repository: Repository, directory: Path, examined: Examined) -> None:
+def write_records(repository: Repository, directory: Path, examined: Findings) -> None:
     """Request, pull, diagnose and fold RECORDS records; delete some of as many others."""
     register_runner(repository)
     assert examined.observation is not None
@@ -83,11 +85,10 @@ def write_records(repository: Repository, directory: Path, examined: Examined) -
         assert claimed is not None
         repository.finish_job(
             claimed.job.id,
-            examined.diagnosis,
+            findings_of(examined.diagnosis, observation=replace(examined.observation, time_ns=now_ns)),
             recorded_ns=now_ns,
             now_ns=now_ns,
             runner=RUNNER,
-            observation=replace(examined.observation, time_ns=now_ns),
         )
         if number >= RECORDS:
             repository.delete_recording(added.recording.id, "a recording of another motor", now_ns=now_ns)
@@ -109,7 +110,7 @@ def row_bytes(file: Path) -> dict[str, float]:
     return {name: sizes[name] / rows[name] for name in tables}
 
 
-def measured_rows(examined: Examined) -> dict[str, float]:
+def measured_rows(examined: Findings) -> dict[str, float]:
     with tempfile.TemporaryDirectory(prefix="growth-", dir=memory_folder()) as name:
         directory = Path(name)
         url = sqlite_url(directory)

@@ -27,7 +27,8 @@ from service.plant import PlantMotor
 from service.recording_store.folder import FolderStore
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect, migrate
-from service.storage.records import RecordLength, RemoteRecord
+from service.storage.records import RemoteRecord
+from testing.service.findings import findings_of
 from testing.service.job_runner import RUNNER, register_runner
 from testing.service.observations import records_of_a_motor
 from testing.service.plants import NOW_NS, healthy
@@ -108,14 +109,17 @@ class _Path:
         with costs.of("service: keep the diagnosis"):
             repository.finish_job(
                 claimed.job.id,
-                healthy(),
+                findings_of(
+                    healthy(),
+                    observation=observed,
+                    rotor=replace(SOUND_ROTOR, severity_dB=-68.0 - number % 7),
+                    supply=SUPPLY,
+                    duration_s=1.0,
+                    pre_trigger_s=0.2,
+                ),
                 recorded_ns=observed.time_ns,
                 now_ns=now_ns,
                 runner=RUNNER,
-                observation=observed,
-                rotor=replace(SOUND_ROTOR, severity_dB=-68.0 - number % 7),
-                supply=SUPPLY,
-                length=RecordLength(1.0, 0.2),
             )
         with costs.of("service: settle the rotor's alarm"):
             repository.settle_rotor_alarm(motor, now_ns=now_ns)

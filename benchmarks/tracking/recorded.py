@@ -7,8 +7,8 @@ import numpy as np
 
 from benchmarks.reporting import Section, spread, table
 from benchmarks.tracking.motors import HAPPENINGS
-from core.condition.measuring.observing import examine
 from core.condition.observation import Observation
+from core.findings.examining import examine
 from core.tracking.drift import FOLLOWED
 from core.tracking.finding import DriftCause
 from core.tracking.follower import REFERENCE_RECORDS, Follower

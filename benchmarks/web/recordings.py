@@ -10,6 +10,7 @@ from core.recordings import Channel, Quantity, Recording, comtrade
 from service.configuration.settings import sqlite_url
 from service.recording_store.folder import FolderStore
 from service.storage import Repository, connect
+from testing.service.findings import findings_of
 from testing.service.job_runner import RUNNER, register_runner
 from testing.service.plants import fault
 
@@ -47,7 +48,9 @@ def store_long_recording(data: Path) -> str:
         added = repository.add_recording(stored, motor=motor_name(3), now_ns=now_ns)
         claimed = repository.claim_job(now_ns=now_ns, runner=RUNNER)
         assert claimed is not None
-        repository.finish_job(claimed.job.id, fault(), recorded_ns=now_ns, now_ns=now_ns, runner=RUNNER)
+        repository.finish_job(
+            claimed.job.id, findings_of(fault()), recorded_ns=now_ns, now_ns=now_ns, runner=RUNNER
+        )
         return added.recording.id
     finally:
         engine.dispose()

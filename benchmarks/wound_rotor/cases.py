@@ -9,7 +9,8 @@ from typing import Literal
 
 import numpy as np
 
-from core.condition.measuring.observing import Examined, examine
+from core.findings.examining import examine
+from core.findings.findings import Findings
 from core.machines.parameters import Motor, ParameterTolerances, WoundRotor
 from ied_sim.motor.load import Pulsation
 from testing.machines.wound_rotors import HOIST, MILL, WoundRotorCase
@@ -48,7 +49,7 @@ class Result:
     phase: int
     slip: float
     external_ohm: float
-    found: Examined
+    found: Findings
 
 
 def examined(subject: Subject) -> Result:

@@ -7,12 +7,12 @@ from core.classification.amplitude import log_ratio, rotor_block
 from core.classification.classification import Classification, classify
 from core.classification.evidence import Block, Evidence, Verdict, only
 from core.classification.swings import eccentricity_block, pulsation_block
-from core.condition.measuring.observing import Examined
 from core.diagnosis.causes import OF_ONE_ASYMMETRY, PRIORS, Cause
 from core.diagnosis.phase_words import turns_phase_in_words
 from core.diagnosis.verdict import Diagnosis
 from core.diagnosis.verdict import Verdict as DiagnosisVerdict
-from core.rotor.finding import RotorState
+from core.rotor.finding import RotorFinding, RotorState
+from core.rotor.swing_findings import EccentricityFinding, PulsationFinding
 
 REFUSED: Final = 8.0
 """Evidence of a check of the quality gate that failed [nats]: it names what is wrong, not how surely."""
@@ -38,32 +38,34 @@ CHECKS: Final = MappingProxyType(
 ONE_RECORD: Final = "one record does not tell what the load was before"
 
 
-def classify_record(examined: Examined) -> Classification:
+def classify_record(
+    diagnosis: Diagnosis, rotor: RotorFinding, eccentricity: EccentricityFinding, pulsation: PulsationFinding
+) -> Classification:
     """Weigh the causes by all that one record shows.
 
     Parameters
     ----------
-    examined : Examined
-        What was examined in the record.
+    diagnosis : Diagnosis
+        What it shows of the stator.
+    rotor : RotorFinding
+        What it shows of the rotor's cage.
+    eccentricity : EccentricityFinding
+        What it shows of the air gap.
+    pulsation : PulsationFinding
+        What it shows of a load that swings.
 
     Returns
     -------
     Classification
         The answer.
     """
-    return classify(evidence_of(examined))
-
-
-def evidence_of(examined: Examined) -> Evidence:
-    """Return the evidence of one record."""
-    rotor, eccentricity, pulsation = examined.rotor, examined.eccentricity, examined.pulsation
     blocks: list[Block | None] = [
         rotor_block(rotor.severity_dB, rotor.severity_dB_ci95),
         eccentricity_block(eccentricity),
         pulsation_block(rotor, eccentricity, pulsation),
     ]
-    stator, why = _of_phasors(examined.diagnosis)
-    known = tuple(block for block in (*blocks, stator, _supply(examined)) if block is not None)
+    stator, why = _of_phasors(diagnosis)
+    known = tuple(block for block in (*blocks, stator, _supply(diagnosis)) if block is not None)
     told = frozenset().union(*(block.causes for block in known)) if known else frozenset()
     reasons = {
         Cause.ROTOR: _first(rotor.reasons),
@@ -72,7 +74,7 @@ def evidence_of(examined: Examined) -> Evidence:
         Cause.LOAD: ONE_RECORD,
     }
     untold = {cause: reasons.get(cause, why) for cause in PRIORS if cause not in told}
-    return Evidence(known, untold, _verdicts(examined), OF_ONE_ASYMMETRY)
+    return classify(Evidence(known, untold, _verdicts(diagnosis, rotor), OF_ONE_ASYMMETRY))
 
 
 def _of_phasors(diagnosis: Diagnosis) -> tuple[Block | None, str]:
@@ -91,10 +93,10 @@ def _of_phasors(diagnosis: Diagnosis) -> tuple[Block | None, str]:
     return Block(causes, likelihood, {one: figures[one] for one in causes}), ""
 
 
-def _supply(examined: Examined) -> Block | None:
+def _supply(diagnosis: Diagnosis) -> Block | None:
     """Return the evidence of an unbalanced supply: how far V2/V1 is beyond that of usual ones."""
-    indicators = examined.diagnosis.indicators
-    if indicators is None or examined.diagnosis.currents_only:
+    indicators = diagnosis.indicators
+    if indicators is None or diagnosis.currents_only:
         return None
     unbalance = indicators.voltage_unbalance
     return only(
@@ -112,9 +114,8 @@ def _refused(diagnosis: Diagnosis) -> Block | None:
     return only(cause, REFUSED, failed.message)
 
 
-def _verdicts(examined: Examined) -> tuple[Verdict, ...]:
+def _verdicts(diagnosis: Diagnosis, rotor: RotorFinding) -> tuple[Verdict, ...]:
     """Return what the record's own verdicts say for sure."""
-    diagnosis, rotor = examined.diagnosis, examined.rotor
     turns, cage = Cause.SHORTED_TURNS, Cause.ROTOR
     found = []
     if diagnosis.verdict is DiagnosisVerdict.FAULT:

@@ -23,6 +23,8 @@ class Part(StrEnum):
     AIR_GAP = "air-gap"
     PARAMETERS = "parameters"
     LOAD = "load"
+    EFFICIENCY = "efficiency"
+    """What running costs: it has an alarm, and says nothing of the motor's health."""
 
     @property
     def words(self) -> str:
@@ -132,7 +134,7 @@ class PartCondition:
 
 
 def counting(parts: Iterable[PartCondition]) -> list[PartCondition]:
-    """Return the parts that somebody has to look after, the worst first.
+    """Return the parts of a motor's health that somebody has to look after, the worst first.
 
     Parameters
     ----------
@@ -144,7 +146,8 @@ def counting(parts: Iterable[PartCondition]) -> list[PartCondition]:
     list of PartCondition
         Those that count.
     """
-    return sorted((one for one in parts if one.counts), key=lambda one: RANKS[one.state_of_motor])
+    found = (one for one in parts if one.counts and one.part is not Part.EFFICIENCY)
+    return sorted(found, key=lambda one: RANKS[one.state_of_motor])
 
 
 def findings_beside_stator(parts: Iterable[PartCondition]) -> str:

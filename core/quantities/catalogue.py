@@ -206,6 +206,25 @@ def _supply() -> Iterator[Quantity]:
         yield Quantity(name, Subject.SUPPLY, unit, meaning, name, written=written)
 
 
+def _losses() -> Iterator[Quantity]:
+    of = Subject.LOSSES
+    for name, unit, written, meaning in (
+        ("efficiency", "1", "%", "power at the shaft over power drawn"),
+        ("losses_W", "W", ".4g", "all losses of the motor"),
+    ):
+        value = Quantity(name, of, unit, meaning, name, written=written)
+        yield value
+        yield from _ends(value, _CI95)
+    for name, meaning in (
+        ("output_W", "power at the shaft"),
+        ("turns_loss_W", "losses by shorted turns"),
+        ("unbalance_loss_W", "losses by the unbalance of the supply"),
+        ("voltage_loss_W", "losses because the voltage is not the rated one"),
+        ("rotor_loss_W", "losses by a faulty cage"),
+    ):
+        yield Quantity(name, of, "W", meaning, name)
+
+
 def _parameters() -> Iterator[Quantity]:
     for parameter, meaning in (
         ("stator_resistance", "change of R_s since the first records, the load's heat taken out"),
@@ -226,6 +245,7 @@ QUANTITIES: Final[tuple[Quantity, ...]] = (
     *_air_gap(),
     *_load(),
     *_supply(),
+    *_losses(),
     *_parameters(),
 )
 """In the order of an export's columns."""

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Any, Final
 
 
 class Subject(StrEnum):
@@ -16,6 +17,7 @@ class Subject(StrEnum):
     LOAD = "load"
     """Swings of the load's torque."""
     SUPPLY = "supply"
+    LOSSES = "losses"
     PARAMETERS = "parameters"
     """Changes of the machine's parameters, as all records up to one tell them."""
 
@@ -31,6 +33,9 @@ class Role(StrEnum):
     DETECTION_LIMIT = "detection limit"
     STANDARD_DEVIATION = "standard deviation"
     MARGIN = "half of the 95 % interval"
+
+
+INTERVAL_ENDS: Final = frozenset({Role.CI95_LOW, Role.CI95_HIGH, Role.SCATTER95_LOW, Role.SCATTER95_HIGH})
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +70,33 @@ class Quantity:
     of: str | None = None
     role: Role = Role.VALUE
     written: str = ".4g"
+
+    def read(self, finding: object) -> Any:
+        """Return its value in a finding of its subject.
+
+        Parameters
+        ----------
+        finding : object
+            The finding, which has it as an attribute; the ends of an interval as one of the two together.
+
+        Returns
+        -------
+        object
+            The value; None where the finding does not tell it.
+        """
+        if self.end is None:
+            return getattr(finding, self.attribute)
+        interval, place = self.end
+        ends = getattr(finding, interval)
+        return None if ends is None else ends[place]
+
+    @property
+    def end(self) -> tuple[str, int] | None:
+        """The attribute of the interval whose end it is, and which of the two; None of other figures."""
+        for place, suffix in enumerate(("_low", "_high")):
+            if self.role in INTERVAL_ENDS and self.attribute.endswith(suffix):
+                return self.attribute.removesuffix(suffix), place
+        return None
 
     @property
     def is_trended(self) -> bool:

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from enum import StrEnum
 from math import log10
+from typing import Self
 
 LOWEST_DB = -120.0
 """What is less is written so."""
@@ -66,6 +67,37 @@ class RotorFinding:
     duration_s: float
     load_oscillation_dB: float | None
     reasons: tuple[str, ...]
+
+    @classmethod
+    def untold(cls, reason: str, duration_s: float) -> Self:
+        """Return the finding of a record that tells nothing.
+
+        Parameters
+        ----------
+        reason : str
+            Why, in words.
+        duration_s : float
+            Length of the record [s].
+
+        Returns
+        -------
+        RotorFinding
+            The finding, without figures.
+        """
+        return cls(
+            state=RotorState.UNSUPPORTED,
+            lower_sideband_dB=None,
+            upper_sideband_dB=None,
+            severity_dB=None,
+            severity_dB_ci95=None,
+            detection_limit_dB=None,
+            slip=None,
+            load_level=None,
+            load_bin=None,
+            duration_s=duration_s,
+            load_oscillation_dB=None,
+            reasons=(reason,),
+        )
 
     def as_dict(self) -> dict[str, object]:
         """Return the part `rotor` of the document that `mcc diagnose --json` prints.

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from core.condition.kinds import State
+from core.motor_condition.efficiency import ADVICE as EFFICIENCY_ADVICE
 from core.motor_condition.judging import AIR_GAP_ADVICE
 from core.motor_condition.supply import ADVICE as SUPPLY_ADVICE
 from core.rotor.advice import rotor_advice
@@ -100,6 +101,14 @@ CATALOGUE: Final[Mapping[AlarmKind, AlarmDescription]] = {
         "The rotor is pulled to one side; bearings wear faster, and it may touch the stator one day.",
         AIR_GAP_ADVICE,
         "the latest records do not show it, or something else explains them, or the motor leaves the plant",
+    ),
+    AlarmKind.INEFFICIENT: AlarmDescription(
+        AlarmPriority.LOW,
+        "Most of the motor's latest records have less than 40 % of its rated load, or faults and supply add "
+        "a tenth or more to its losses in two of the latest three.",
+        "Energy is paid for that does no work; what adds losses by a fault also heats the winding.",
+        EFFICIENCY_ADVICE,
+        "the latest records do not show it any more, or the motor leaves the plant",
     ),
     AlarmKind.PARAMETER_DRIFT: AlarmDescription(
         AlarmPriority.MEDIUM,

@@ -28,6 +28,7 @@ class AlarmKind(StrEnum):
     SUPPLY_FAULT = "supply-fault"
     SUPPLY_WATCH = "supply-watch"
     UNEVEN_AIR_GAP = "uneven-air-gap"
+    INEFFICIENT = "inefficient"
     PARAMETER_DRIFT = "parameter-drift"
     HARD_STARTS = "hard-starts"
     CHANGED_STARTS = "changed-starts"

@@ -13,6 +13,7 @@ PART_ALARMS: Final[Mapping[tuple[Part, State], AlarmKind]] = MappingProxyType(
         (Part.SUPPLY, State.WATCH): AlarmKind.SUPPLY_WATCH,
         (Part.SUPPLY, State.FAULT): AlarmKind.SUPPLY_FAULT,
         (Part.AIR_GAP, State.WATCH): AlarmKind.UNEVEN_AIR_GAP,
+        (Part.EFFICIENCY, State.WATCH): AlarmKind.INEFFICIENT,
     }
 )
 PART_OF_ALARM: Final[Mapping[AlarmKind, Part]] = MappingProxyType(

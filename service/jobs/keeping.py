@@ -1,6 +1,7 @@
 """Keep what a worker found in a recording, and settle the alarms and the relay's clock by it."""
 
 import time
+from dataclasses import replace
 
 import structlog
 from structlog.typing import FilteringBoundLogger
@@ -22,38 +23,24 @@ def keep_diagnosed(
     time_zone: of the relay's clock (IANA); None for UTC.  Raises SQLAlchemyError, UnstorableDiagnosisError.
     """
     job, now_ns = claimed.job, time.time_ns()
-    # The recordings that a joined one is made of tell the condition.
-    observation, start, left_out = None if claimed.is_joined else made.observation, made.start, None
+    findings, left_out = made.findings, None
+    if claimed.is_joined:  # the recordings that it is made of tell the condition
+        findings = replace(findings, observation=None)
     try:
         require_possible_time(made.recorded_ns, now_ns)
     except ImpossibleTimeError as error:
-        observation, start, left_out = None, None, str(error)
+        findings, left_out = replace(findings, observation=None, start=None), str(error)
         log.warning("record left out of the condition", recording=job.recording_id, reason=left_out)
     kept = repository.finish_job(
-        job.id,
-        made.diagnosis,
-        recorded_ns=made.recorded_ns,
-        now_ns=now_ns,
-        runner=runner,
-        observation=observation,
-        left_out=left_out,
-        operation_remark=made.operation_remark,
-        start=start,
-        rotor=made.rotor,
-        supply=made.supply,
-        length=made.length,
-        classification=made.classification,
-        eccentricity=made.eccentricity,
-        pulsation=made.pulsation,
+        job.id, findings, recorded_ns=made.recorded_ns, now_ns=now_ns, runner=runner, left_out=left_out
     )
     if not kept:
         log.warning("a diagnosis came after the lease was lost", recording=job.recording_id)
         return
-    if made.rotor is not None or claimed.is_repetition:
-        repository.settle_rotor_alarm(claimed.motor, now_ns=now_ns)
-    if start is not None or claimed.is_repetition:
+    repository.settle_rotor_alarm(claimed.motor, now_ns=now_ns)
+    if findings.start is not None or claimed.is_repetition:
         repository.settle_start_alarms_of(claimed.motor, now_ns=now_ns)
-    if observation is None or claimed.is_repetition:
+    if findings.observation is None or claimed.is_repetition:
         repository.settle_motor_condition(claimed.motor, now_ns=now_ns)  # no fold will do so
     is_first = not claimed.is_repetition  # a repetition tells of the clock as it was
     if is_first and claimed.ied is not None and claimed.triggered_ns is not None:
@@ -66,11 +53,11 @@ def keep_diagnosed(
             repository.preceding_offset_ns(claimed.ied, claimed.triggered_ns),
         )
         note_relay_time(repository, record, now_ns)
-    operation = made.diagnosis.operation
+    operation = findings.diagnosis.operation
     log.info(
         "recording diagnosed",
         recording=job.recording_id,
         motor=claimed.motor,
-        verdict=str(made.diagnosis.verdict),
+        verdict=str(findings.diagnosis.verdict),
         operation=None if operation is None else str(operation),
     )

@@ -3,16 +3,9 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from core.classification.classification import Classification
-from core.condition.observation import Observation
-from core.diagnosis.verdict import Diagnosis
+from core.findings.findings import Findings
 from core.machines.parameters import Motor
-from core.rotor.finding import RotorFinding
-from core.rotor.swing_findings import EccentricityFinding, PulsationFinding
-from core.starts.examined import ExaminedStart
-from core.supply.figures import SupplyFigures
 from service.recording_store.recording import Source
-from service.storage.records import RecordLength
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,30 +28,15 @@ class DiagnosisTask:
 
 @dataclass(frozen=True, slots=True)
 class Diagnosed:
-    """Hold a diagnosis, the time of its record, and all else that the record tells of its motor.
+    """Hold what a record tells of its motor, and the time at which it was made.
 
-    recorded_ns: trigger time written in the record, UTC [ns].  observation: None where it tells nothing.
-    operation_remark: why the motor's parameters cannot be estimated from this start; None where they can, and
-    for other records.
-    has_time_code: whether the record tells how far its times are ahead of UTC.
-    length: that of the record.
-    start: what a start shows; None of other records, and where nothing can be measured.  rotor, supply: what
-    the record shows of them; None where it shows nothing.  classification: which causes are likely.
-    eccentricity, pulsation: what it shows of the air gap and of a load that swings.
+    recorded_ns: trigger time written in the record, UTC [ns].  has_time_code: whether the record tells how
+    far its times are ahead of UTC.
     """
 
-    diagnosis: Diagnosis
+    findings: Findings
     recorded_ns: int
-    observation: Observation | None = None
-    operation_remark: str | None = None
     has_time_code: bool = False
-    start: ExaminedStart | None = None
-    rotor: RotorFinding | None = None
-    supply: SupplyFigures | None = None
-    length: RecordLength | None = None
-    classification: Classification | None = None
-    eccentricity: EccentricityFinding | None = None
-    pulsation: PulsationFinding | None = None
 
 
 @dataclass(frozen=True, slots=True)

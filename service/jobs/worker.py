@@ -4,6 +4,7 @@ The service's own process imports this module to name what its workers do. The n
 behind them, are imported where the work is done: without them the service starts sooner and stays smaller.
 """
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 from zoneinfo import ZoneInfo
 
@@ -18,7 +19,6 @@ from service.condition.healthy_records import MOST_VALUES, learnt
 from service.jobs.task import Diagnosed, DiagnosisTask, Outcome, Rejected
 from service.jobs.worker_process import follow_service
 from service.recording_store.errors import RecordingStoreError
-from service.storage.records import RecordLength
 
 if TYPE_CHECKING:
     from core.starts.examined import ExaminedStart
@@ -37,8 +37,7 @@ def diagnose_recording(task: DiagnosisTask) -> Outcome:
 
     Raises OSError where it cannot be had for now.
     """
-    from core.classification.record import classify_record
-    from core.condition.measuring.observing import examine
+    from core.findings.examining import examine
 
     try:
         with task.recording.opened() as entry:
@@ -49,40 +48,22 @@ def diagnose_recording(task: DiagnosisTask) -> Outcome:
         if task.time_zone is not None:
             recording = in_utc(recording, ZoneInfo(task.time_zone), task.near_ns)
         recorded_ns = recording.trigger_time_ns  # a lenient reader may have found none
-        examined = examine(
+        found = examine(
             recording,
-            task.motor,
+            motor,
             method=task.method,
             model=task.model,
-            baseline=learnt(task.baseline, task.motor) if task.baseline else None,
+            baseline=learnt(task.baseline, motor) if task.baseline else None,
         )
     except (RecordingError, DiagnosisError, RecordingStoreError) as error:
         return Rejected(str(error))
-    remark, start = None, None
-    if examined.diagnosis.operation is Operation.START:
-        remark = _why_not_commissioned_from(recording, task.motor)
-        start = _measured(recording, task.motor)
-    return Diagnosed(
-        examined.diagnosis,
-        recorded_ns,
-        examined.observation,
-        remark,
-        recording.has_time_code,
-        start,
-        examined.rotor,
-        examined.supply,
-        _length(recording),
-        classify_record(examined),
-        examined.eccentricity,
-        examined.pulsation,
-    )
-
-
-def _length(recording: Recording) -> RecordLength:
-    """Return how long a record is, and how much of it is before its trigger."""
-    index = recording.trigger_index
-    before_s = None if index is None else float(recording.time_s[index])
-    return RecordLength(recording.duration_s, before_s)
+    if found.diagnosis.operation is Operation.START:
+        found = replace(
+            found,
+            start=_measured(recording, motor),
+            not_commissioned_from=_why_not_commissioned_from(recording, motor),
+        )
+    return Diagnosed(found, recorded_ns, recording.has_time_code)
 
 
 def _why_not_commissioned_from(recording: Recording, motor: Motor) -> str | None:

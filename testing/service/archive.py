@@ -17,6 +17,7 @@ from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect
 from testing.machines.phase_circuits import Fault
 from testing.service.database import make_database
+from testing.service.findings import findings_of
 from testing.service.job_runner import RUNNER
 from testing.service.plants import NOW_NS, SECOND_NS, healthy
 from testing.service.processes import switched_off_plant
@@ -88,6 +89,10 @@ def make_archive(directory: Path, records: int, recordings_url: str | None = Non
         claimed = repository.claim_job(now_ns=time.time_ns(), runner=RUNNER)
         assert claimed is not None
         repository.finish_job(
-            claimed.job.id, healthy(), recorded_ns=begin_ns, now_ns=begin_ns + SECOND_NS, runner=RUNNER
+            claimed.job.id,
+            findings_of(healthy()),
+            recorded_ns=begin_ns,
+            now_ns=begin_ns + SECOND_NS,
+            runner=RUNNER,
         )
     return Archive(config, settings, plant, engine, tuple(ids))

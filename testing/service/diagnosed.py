@@ -4,6 +4,7 @@ from core.condition.observation import Observation
 from core.diagnosis.verdict import Diagnosis
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
+from testing.service.findings import findings_of
 from testing.service.job_runner import RUNNER
 
 
@@ -27,10 +28,9 @@ def add_diagnosed(
     assert claimed is not None
     repository.finish_job(
         claimed.job.id,
-        diagnosis,
+        findings_of(diagnosis, observation=observed),
         recorded_ns=recorded_ns,
         now_ns=recorded_ns,
         runner=RUNNER,
-        observation=observed,
     )
     return added.recording.id

@@ -10,6 +10,7 @@ from service.condition.worker import fold_due
 from service.plant import Plant
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
+from testing.service.findings import findings_of
 from testing.service.job_runner import RUNNER
 from testing.service.observations import HOUR_NS
 from testing.service.plants import NOW_NS, healthy, motor, two_motor_plant
@@ -42,11 +43,10 @@ class Recorder:
         assert claimed is not None
         assert self._repository.finish_job(
             claimed.job.id,
-            healthy(),
+            findings_of(healthy(), observation=observed),
             recorded_ns=NOW_NS if observed is None else observed.time_ns,
             now_ns=NOW_NS,
             runner=RUNNER,
-            observation=observed,
         )
 
     def diagnose_again(self, recording_id: str, observed: Observation | None) -> None:

@@ -70,14 +70,9 @@ def add_recording(
     assert isinstance(outcome, Diagnosed), outcome
     repository.finish_job(
         claimed.job.id,
-        outcome.diagnosis,
+        outcome.findings,
         recorded_ns=outcome.recorded_ns,
         now_ns=now_ns,
         runner=RUNNER,
-        observation=outcome.observation,
-        rotor=outcome.rotor,
-        supply=outcome.supply,
-        eccentricity=outcome.eccentricity,
-        pulsation=outcome.pulsation,
     )
     return added.id

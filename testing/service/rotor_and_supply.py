@@ -11,6 +11,7 @@ from core.supply.figures import SupplyFigures
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from service.storage.records import Series
+from testing.service.findings import findings_of
 from testing.service.job_runner import RUNNER
 from testing.service.plants import NOW_NS, SECOND_NS, healthy
 
@@ -173,14 +174,16 @@ class ExaminedRecordings:
         assert claimed is not None
         assert self.repository.finish_job(
             claimed.job.id,
-            healthy() if diagnosis is None else diagnosis,
+            findings_of(
+                healthy() if diagnosis is None else diagnosis,
+                rotor=rotor,
+                supply=supply,
+                classification=classification,
+                eccentricity=eccentricity,
+                pulsation=pulsation,
+            ),
             recorded_ns=recorded_ns,
             now_ns=recorded_ns,
             runner=RUNNER,
             left_out=left_out,
-            rotor=rotor,
-            supply=supply,
-            classification=classification,
-            eccentricity=eccentricity,
-            pulsation=pulsation,
         )

@@ -7,6 +7,7 @@ from core.starts.examined import ExaminedStart
 from core.starts.figures import MotorStart, StartCurve
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
+from testing.service.findings import findings_of
 from testing.service.job_runner import RUNNER
 from testing.service.plants import NOW_NS, SECOND_NS, undiagnosable
 
@@ -49,9 +50,8 @@ class RecordedStarts:
         seen = replace(undiagnosable(), operation=Operation.START)
         self.repository.finish_job(
             claimed.job.id,
-            seen,
+            findings_of(seen, start=ExaminedStart(start) if isinstance(start, MotorStart) else start),
             recorded_ns=recorded_ns,
             now_ns=recorded_ns,
             runner=RUNNER,
-            start=ExaminedStart(start) if isinstance(start, MotorStart) else start,
         )

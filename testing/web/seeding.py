@@ -38,6 +38,7 @@ from service.storage.records import Actor, RelayFindings, Role, Sample
 from service.storage.states import AlarmKind, LinkState
 from testing.service.conditions import DRIFTING, HEALTHY, tell
 from testing.service.database import make_database
+from testing.service.findings import findings_of
 from testing.service.job_runner import RUNNER, register_runner
 from testing.service.links import set_link_state
 from testing.service.observations import records_of_a_motor
@@ -120,16 +121,18 @@ class _Seeding:
         assert claimed is not None
         assert self.repository.finish_job(
             claimed.job.id,
-            diagnosis,
+            findings_of(
+                diagnosis,
+                observation=observed,
+                start=start,
+                rotor=rotor,
+                supply=supply,
+                eccentricity=eccentricity,
+                pulsation=pulsation,
+            ),
             recorded_ns=time_ns,
             now_ns=time_ns,
             runner=RUNNER,
-            observation=observed,
-            start=start,
-            rotor=rotor,
-            supply=supply,
-            eccentricity=eccentricity,
-            pulsation=pulsation,
         )
         return added.recording.id
 
@@ -150,12 +153,12 @@ class _Seeding:
         return self.add(
             motor,
             files,
-            found.diagnosis,
+            found.findings.diagnosis,
             found.recorded_ns,
-            found.observation,
-            found.start,
-            rotor=found.rotor,
-            supply=found.supply,
+            found.findings.observation,
+            found.findings.start,
+            rotor=found.findings.rotor,
+            supply=found.findings.supply,
         )
 
     def motor(self, name: str) -> Motor:

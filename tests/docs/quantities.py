@@ -20,6 +20,7 @@ HEADINGS = {
     Subject.AIR_GAP: "The air gap",
     Subject.LOAD: "Swings of the load",
     Subject.SUPPLY: "The supply",
+    Subject.LOSSES: "Losses and efficiency",
     Subject.PARAMETERS: "Parameters of the machine, from all records so far",
 }
 

@@ -1,83 +1,22 @@
 """All that one record tells: its own diagnosis, an observation of its motor's condition, rotor and supply."""
 
-from dataclasses import dataclass, replace
 from hashlib import sha256
 from math import isfinite, sqrt
-from time import perf_counter
 
 import numpy as np
 
-from core.condition.measuring.beside_stator import rotor_and_swings_of, speed_beside, supply_of
 from core.condition.measuring.bounds import LONGEST_RECORDER
 from core.condition.measuring.impedance import negative_impedance
 from core.condition.observation import Observation, VoltageChannels
 from core.diagnosis.acceptance import Accepted, accept
-from core.diagnosis.baseline import Baseline
 from core.diagnosis.errors import NoVoltagesError
 from core.diagnosis.fundamental import Fundamental, phasors_of
-from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
 from core.diagnosis.operating_point import load_of
-from core.diagnosis.stator import diagnose_accepted
-from core.diagnosis.verdict import Diagnosis
 from core.machines.parameters import Motor
 from core.recordings import Channel, Quantity, Recording
-from core.rotor.finding import RotorFinding
-from core.rotor.swing_findings import EccentricityFinding, PulsationFinding
-from core.speed.finding import SpeedFinding
-from core.speed.memory import LineMemory
-from core.supply.figures import SupplyFigures
 
 PHASE_PER_SPACE_VECTOR = sqrt(2.0 / 3.0)
 """Phasor of a phase over that of the power-invariant space vector."""
-
-
-@dataclass(frozen=True, slots=True)
-class Examined:
-    """All that one record tells.
-
-    Parameters
-    ----------
-    diagnosis : Diagnosis
-        Its verdict.
-    observation : Observation or None
-        What it tells of the motor's condition; None where the quality gate refused it, no voltages are
-        used, or its time is not known.
-    rotor : RotorFinding
-        What it tells of the rotor's cage.
-    supply : SupplyFigures or None
-        What it shows of the supply; None where it shows nothing.
-    eccentricity : EccentricityFinding
-        What it tells of the air gap.
-    pulsation : PulsationFinding
-        What it tells of a load that swings.
-    speed : SpeedFinding
-        The speed of the shaft: seen in the current, or by the model.
-    """
-
-    diagnosis: Diagnosis
-    observation: Observation | None
-    rotor: RotorFinding
-    supply: SupplyFigures | None
-    eccentricity: EccentricityFinding
-    pulsation: PulsationFinding
-    speed: SpeedFinding
-
-    def as_dict(self) -> dict[str, object]:
-        """Return the document that `mcc diagnose --json` prints; its keys are a contract.
-
-        Returns
-        -------
-        dict of str to object
-            The document of the diagnosis, with `rotor`, `supply`, `eccentricity`, `pulsation` and
-            `speed`.
-        """
-        return self.diagnosis.as_dict() | {
-            "rotor": self.rotor.as_dict(),
-            "supply": None if self.supply is None else self.supply.as_dict(),
-            "eccentricity": self.eccentricity.as_dict(),
-            "pulsation": self.pulsation.as_dict(),
-            "speed": self.speed.as_dict(),
-        }
 
 
 def observe(recording: Recording, motor: Motor) -> Observation | None:
@@ -105,70 +44,6 @@ def observe(recording: Recording, motor: Motor) -> Observation | None:
     except NoVoltagesError:
         return None
     return None if accepted is None else observation_of(recording, accepted)
-
-
-def examine(
-    recording: Recording,
-    motor: Motor,
-    *,
-    method: str = DEFAULT_METHOD,
-    model: str = DEFAULT_MODEL,
-    baseline: Baseline | None = None,
-    currents_only: bool = False,
-    lines: LineMemory | None = None,
-) -> Examined:
-    """Diagnose a record, observe the motor's condition in it, and see what it tells of rotor and supply.
-
-    The record goes through the quality gate once for all. A baseline serves the diagnosis alone: the
-    observation holds what was measured.
-
-    Parameters
-    ----------
-    recording : Recording
-        The recording.
-    motor : Motor
-        Nameplate, parameters, channel names, limits and sensors of the motor.
-    method : str, optional
-        Global search, one of `core.diagnosis.methods.Method`.
-    model : str, optional
-        Fault model, one of `core.diagnosis.methods.Model`.
-    baseline : Baseline or None, optional
-        The motor's standing asymmetry, for the diagnosis.
-    currents_only : bool, default False
-        Use no voltages, recorded or not; there is no observation then.
-    lines : LineMemory or None, optional
-        What earlier records told of the lines of the motor's rotor, for its speed; it learns from this one.
-
-    Returns
-    -------
-    Examined
-        Diagnosis, observation, rotor, supply, air gap, swings of the load and speed.
-
-    Raises
-    ------
-    RecordingError
-        If the recording lacks channels that the motor needs.
-    DiagnosisError
-        If the method or the model is unknown.
-    """
-    begun = perf_counter()
-    acceptance = accept(recording, motor, currents_only=currents_only)
-    diagnosis = diagnose_accepted(acceptance, method=method, model=model, baseline=baseline, begun=begun)
-    accepted, undated = acceptance.accepted, recording.start_time_ns is None
-    supply, problem = supply_of(recording, motor, acceptance)
-    if problem is not None:
-        diagnosis = replace(diagnosis, reasons=(*diagnosis.reasons, problem))
-    speed = speed_beside(accepted, diagnosis, lines)
-    rotor, eccentricity, pulsation = rotor_and_swings_of(recording, accepted, diagnosis, speed)
-    return Examined(
-        diagnosis=diagnosis,
-        observation=None if accepted is None or undated else observation_of(recording, accepted),
-        rotor=rotor,
-        supply=supply,
-        eccentricity=eccentricity,
-        pulsation=pulsation,
-        speed=speed,
-    )
 
 
 def observation_of(recording: Recording, accepted: Accepted) -> Observation | None:

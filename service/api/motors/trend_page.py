@@ -13,20 +13,19 @@ from service.storage.records import Page
 from service.storage.records.history import TrendPoint
 
 _BESIDE: Final[Mapping[Subject, Sequence[str]]] = {
+    Subject.STATOR: (),
     Subject.CONDITION: ("state", "kind", "phase"),
     Subject.ROTOR: ("state", "reasons"),
-    Subject.AIR_GAP: ("reasons",),
-    Subject.LOAD: ("reasons",),
-    Subject.SUPPLY: ("reasons",),
+    Subject.PARAMETERS: (),
 }
-"""What is said beside figures of a subject, besides the verdict of the recording."""
+"""What is said beside figures of a subject, besides the verdict of the recording; its reasons otherwise."""
 
 
 def trend_page(stored: Page[TrendPoint], quantity: str) -> Response:
     """Return the document of `Page[TrendPoint]`: models would take longer than the query and the text."""
     times = rfc3339_of_all([point.time_ns for point in stored.items])
     points: Iterable[Mapping[str, object]] = map(_point, stored.items, times)
-    beside = _BESIDE.get(BY_NAME[quantity].subject, ())
+    beside = _BESIDE.get(BY_NAME[quantity].subject, ("reasons",))
     if beside:
         points = (
             {**document, **{name: getattr(point, name) for name in beside}}

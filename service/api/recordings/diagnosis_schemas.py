@@ -9,15 +9,14 @@ from core.diagnosis import methods
 from core.diagnosis.causes import Cause
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
 from core.diagnosis.verdict import Verdict
+from core.losses.figures import LossFigures
 from core.operation import Operation
+from core.rotor.finding import RotorFinding
+from core.rotor.swing_findings import EccentricityFinding, PulsationFinding
+from core.speed.finding import SpeedFinding
+from core.supply.figures import SupplyFigures
 from service.api.classification.schemas import Classification
 from service.api.document import Document, Listed, RequestDocument
-from service.api.rotor_and_supply.schemas import (
-    EccentricityFinding,
-    PulsationFinding,
-    RotorFinding,
-    SupplyFigures,
-)
 from service.api.times import Time
 from service.storage.states import JobState
 
@@ -106,7 +105,8 @@ class Diagnosis(Document):
     phase_probabilities: that shorted turns, if there are any, lie in the winding on terminal a, b, c; null of
     a motor with slip rings. hypotheses: the causes that the phasors were weighed for, the likeliest first.
     rotor, supply: what it shows of them. classification: which causes are likely, by all that was examined.
-    eccentricity, pulsation: what it shows of the air gap, and of a load that swings.
+    eccentricity, pulsation: what it shows of the air gap, and of a load that swings. speed: of the shaft, as
+    seen in the current or by the model. losses: with the efficiency, and what faults add to them.
     """
 
     verdict: Verdict
@@ -139,6 +139,8 @@ class Diagnosis(Document):
     classification: Classification | None = None
     eccentricity: EccentricityFinding | None = None
     pulsation: PulsationFinding | None = None
+    speed: SpeedFinding | None = None
+    losses: LossFigures | None = None
 
     @property
     def rotor_slip(self) -> float | None:

@@ -4,14 +4,15 @@ Fields that are null are not known (yet).
 """
 
 from core.rotor.finding import RotorState
+from core.rotor.swing_findings import EccentricityFinding, PulsationFinding
 from service.api.document import Document, Listed
 from service.api.times import Time
 
 Interval = tuple[float, float]
 
 
-class RotorFinding(Document):
-    """What a recording shows of the rotor's cage. It never says how many bars are broken.
+class RotorTrendPoint(Document):
+    """What one recording of a motor shows of its rotor's cage. It never says how many bars are broken.
 
     lower_sideband_dB, upper_sideband_dB: currents at (1 - 2s) f and (1 + 2s) f as measured, over the
     fundamental. severity_dB: asymmetry of the rotor, without what load and inertia do to the sidebands
@@ -20,6 +21,8 @@ class RotorFinding(Document):
     the load that swings at 2 s f, over the rated one.
     """
 
+    time: Time
+    recording_id: str
     state: RotorState
     lower_sideband_dB: float | None
     upper_sideband_dB: float | None
@@ -31,49 +34,6 @@ class RotorFinding(Document):
     load_bin: int | None
     duration_s: float
     load_oscillation_dB: float | None
-    reasons: Listed[str]
-
-
-class RotorTrendPoint(RotorFinding):
-    """What one recording of a motor shows of its rotor."""
-
-    time: Time
-    recording_id: str
-
-
-class EccentricityFinding(Document):
-    """What a recording shows of the air gap; figures are null where it cannot tell them.
-
-    permeance_ripple: of the gap's permeance, once a turn, over its mean, with its standard_deviation.
-    detection_limit: ripple that nine of ten such recordings show. lower_sideband_dB, upper_sideband_dB:
-    currents at f - f_r and f + f_r as measured, over the fundamental. load_torque: torque of the load that
-    swings once a turn, over the rated one, with load_torque_deviation. rotation_frequency_hz: f_r.
-    """
-
-    permeance_ripple: float | None
-    standard_deviation: float | None
-    detection_limit: float | None
-    lower_sideband_dB: float | None
-    upper_sideband_dB: float | None
-    load_torque: float | None
-    load_torque_deviation: float | None
-    rotation_frequency_hz: float | None
-    reasons: Listed[str]
-
-
-class PulsationFinding(Document):
-    """The strongest swing of the load's torque; figures are null where a recording cannot tell them.
-
-    load_torque: its amplitude over the rated torque, with load_torque_deviation. noise: what noise makes of
-    it, rms. detection_limit: swing that nine of ten such recordings show. What swings once a turn is told by
-    the eccentricity, and at twice the slip by the rotor.
-    """
-
-    load_torque: float | None
-    noise: float | None
-    frequency_hz: float | None
-    load_torque_deviation: float | None
-    detection_limit: float | None
     reasons: Listed[str]
 
 
@@ -127,8 +87,8 @@ class RotorCondition(Document):
     reasons: Listed[str]
 
 
-class SupplyFigures(Document):
-    """What a recording shows of the supply, and of what the motor draws from it.
+class SupplyTrendPoint(Document):
+    """What one recording of a motor shows of its supply, and of what the motor draws from it.
 
     voltage_unbalance_iec: negative over positive sequence. voltage_unbalance_nema: largest deviation of a
     line voltage from their mean, over the mean. derating: share of the rated power that the unbalance leaves
@@ -137,6 +97,8 @@ class SupplyFigures(Document):
     line that is distorted most. What is of the currents is null, or empty, where none flows.
     """
 
+    time: Time
+    recording_id: str
     frequency_hz: float
     line_voltages_V: tuple[float, float, float]
     voltage_unbalance_iec: float
@@ -154,10 +116,3 @@ class SupplyFigures(Document):
     power_factor: float | None
     duration_s: float
     reasons: Listed[str]
-
-
-class SupplyTrendPoint(SupplyFigures):
-    """What one recording of a motor shows of its supply."""
-
-    time: Time
-    recording_id: str

@@ -9,10 +9,11 @@ from functools import partial
 from pathlib import Path
 
 from core.condition.copies import SAME_TIME_NS, is_copy
-from core.condition.measuring.beside_stator import supply_of
-from core.condition.measuring.observing import examine, observation_of
+from core.condition.measuring.observing import observation_of
 from core.condition.observation import Observation
 from core.diagnosis.acceptance import accept
+from core.findings.beside_stator import supply_of
+from core.findings.examining import examine
 from core.machines.parameters import Motor
 from core.machines.table_layout import layout_of
 from core.operation import Operation

@@ -7,13 +7,12 @@ from pathlib import Path
 
 from rich.text import Text
 
-from core.classification.classification import Classification
-from core.classification.record import classify_record
-from core.condition.measuring.observing import Examined, examine
 from core.diagnosis.errors import DiagnosisError
 from core.diagnosis.phase_words import turns_phase_in_words
 from core.diagnosis.stator import learn_baseline
 from core.diagnosis.verdict import Diagnosis
+from core.findings.examining import examine
+from core.findings.findings import Findings
 from core.machines.motor_file.error import MotorFileError
 from core.machines.motor_file.reader import read_motor
 from core.machines.parameters import ParametersSource
@@ -85,13 +84,11 @@ def diagnose_recording(
     diagnosis = examined.diagnosis
     diagnosis = replace(diagnosis, reasons=(*diagnosis.reasons, *repaired))
     examined = replace(examined, diagnosis=diagnosis)
-    answer = classify_record(examined)
     if as_json:
-        document = examined.as_dict() | {"classification": answer.as_dict()}
         source = str(found.parameters_source)
-        print_document({**document, "motor_file": str(motor_file), "parameters_source": source})
+        print_document({**examined.as_dict(), "motor_file": str(motor_file), "parameters_source": source})
     else:
-        results().print(_table(record, motor_file, found.parameters_source, examined, answer))
+        results().print(_table(record, motor_file, found.parameters_source, examined))
 
 
 @contextmanager
@@ -127,9 +124,7 @@ def _verdict(diagnosis: Diagnosis) -> Text:
     return verdict if does is None else verdict.append(f" (the recording shows {does})")
 
 
-def _table(
-    record: Path, motor_file: Path, source: ParametersSource, examined: Examined, answer: Classification
-) -> FittedTable:
+def _table(record: Path, motor_file: Path, source: ParametersSource, examined: Findings) -> FittedTable:
     diagnosis = examined.diagnosis
     table = FittedTable(title=Text(record.name), title_justify="left", show_header=False)
     table.add_row("verdict", _verdict(diagnosis))
@@ -150,7 +145,7 @@ def _table(
     if diagnosis.residual_rms_A is not None:
         table.add_row("residual", f"{with_unit(diagnosis.residual_rms_A, 'A', 4)} rms")
     _add_what_is_beside(table, examined)
-    for name, words in answer_rows(answer.as_dict()):
+    for name, words in answer_rows(examined.classification.as_dict()):
         table.add_row(name, Text(words))
     table.add_row("model, method", f"{diagnosis.model}, {diagnosis.method}")
     table.add_row("effort", f"{diagnosis.evaluations} evaluations, {diagnosis.compute_seconds:.3f} s")
@@ -167,7 +162,7 @@ def _table(
     return table
 
 
-def _add_what_is_beside(table: FittedTable, examined: Examined) -> None:
+def _add_what_is_beside(table: FittedTable, examined: Findings) -> None:
     rotor = examined.rotor
     for words in speed_words(examined.speed):
         table.add_row("speed", Text(words))

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from rich.text import Text
 
-from core.condition.measuring.observing import examine
+from core.findings.examining import examine
 from core.machines.motor_file.error import MotorFileError
 from core.machines.motor_file.reader import read_motor
 from core.recordings import RecordingError

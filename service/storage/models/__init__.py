@@ -31,7 +31,7 @@ from service.storage.models.diagnoses import DiagnosisRow, JobRow, JobRunnerRow
 from service.storage.models.measurements import MeasurementRow
 from service.storage.models.notifications import NotificationAlarmRow, NotificationRow
 from service.storage.models.plant import IedRow, MotorRow, SiteRow
-from service.storage.models.record_figures import RecordFiguresRow
+from service.storage.models.record_figures import DETAILS, FIGURE_SUBJECTS, RecordFiguresRow, details_of
 from service.storage.models.recordings import (
     BaselineRecordingRow,
     BaselineRow,
@@ -53,6 +53,8 @@ from service.storage.models.rotor import RotorFindingRow
 from service.storage.models.starts import StartRow
 
 __all__ = [
+    "DETAILS",
+    "FIGURE_SUBJECTS",
     "AlarmChangeRow",
     "AlarmRow",
     "ApiTokenRow",
@@ -105,4 +107,5 @@ __all__ = [
     "StateCountRow",
     "UserRow",
     "UserSessionRow",
+    "details_of",
 ]

@@ -1,15 +1,22 @@
-"""Table of what recordings show of the air gap, of the load's swings and of the supply."""
+"""Table of what recordings show of the air gap, of the load's swings, of the supply and of the losses."""
 
+from types import MappingProxyType
 from typing import Final
 
 from sqlalchemy import JSON, Double, ForeignKey, Index, String, text
-from sqlalchemy.orm import Mapped, mapped_column
+from sqlalchemy.orm import InstrumentedAttribute, Mapped, mapped_column
 
 from core.quantities import Quantity, Subject, of_subject
 from service.storage.models.base import Base
 
-FIGURE_SUBJECTS: Final = (Subject.AIR_GAP, Subject.LOAD, Subject.SUPPLY)
+FIGURE_SUBJECTS: Final = (Subject.AIR_GAP, Subject.LOAD, Subject.SUPPLY, Subject.LOSSES)
+DETAILS: Final = MappingProxyType({subject: subject.replace(" ", "_") for subject in FIGURE_SUBJECTS})
+"""Columns of what is told of a subject beside its figures, as its reasons; null where it was not sought."""
 FIGURE_COLUMNS: Final[tuple[Quantity, ...]] = tuple(one for of in FIGURE_SUBJECTS for one in of_subject(of))
+
+
+INDEXED: Final = ("air_gap", "supply")
+"""What is looked up by motor and time; losses are told with a supply, swings with an air gap."""
 
 
 def _of_those_that_tell(details: str) -> Index:
@@ -22,8 +29,7 @@ def _of_those_that_tell(details: str) -> Index:
 class RecordFiguresRow(Base):
     """What a recording shows beside its winding and its rotor: a column for each figure of the catalogue.
 
-    air_gap, load, supply: what is told of each beside its figures, as its reasons; null where nothing of it
-    was looked for. The row outlives a recording that a rule of retention deletes, as the motor's trend does.
+    The row outlives a recording that a rule of retention deletes, as the motor's trend does.
     """
 
     __tablename__ = "record_figures"
@@ -31,12 +37,17 @@ class RecordFiguresRow(Base):
     recording_id: Mapped[str] = mapped_column(String(36), primary_key=True)
     motor: Mapped[str] = mapped_column(ForeignKey("motors.name"))
     time_ns: Mapped[int]
-    air_gap: Mapped[dict[str, object] | None] = mapped_column(JSON(none_as_null=True))
-    load: Mapped[dict[str, object] | None] = mapped_column(JSON(none_as_null=True))
-    supply: Mapped[dict[str, object] | None] = mapped_column(JSON(none_as_null=True))
 
-    __table_args__ = (_of_those_that_tell("air_gap"), _of_those_that_tell("supply"))
+    __table_args__ = tuple(map(_of_those_that_tell, INDEXED))
 
 
+for details in DETAILS.values():
+    setattr(RecordFiguresRow, details, mapped_column(details, JSON(none_as_null=True)))
 for quantity in FIGURE_COLUMNS:
     setattr(RecordFiguresRow, quantity.name, mapped_column(quantity.name, Double, nullable=True))
+
+
+def details_of(subject: Subject) -> InstrumentedAttribute[dict[str, object] | None]:
+    """Return the column of what is told of a subject beside its figures."""
+    column: InstrumentedAttribute[dict[str, object] | None] = getattr(RecordFiguresRow, DETAILS[subject])
+    return column

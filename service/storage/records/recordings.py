@@ -88,14 +88,6 @@ class RecordingEntry:
 
 
 @dataclass(frozen=True, slots=True)
-class RecordLength:
-    """How long a record is, and how much of it is before its trigger; None where it names none."""
-
-    duration_s: float
-    pre_trigger_s: float | None
-
-
-@dataclass(frozen=True, slots=True)
 class SeriesEnd:
     """What ended a series: the name of a recording, its time [ns UTC], and what the motor does in it."""
 

@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from core.rotor.finding import RotorFinding, RotorState
-from core.rotor.swing_findings import EccentricityFinding, PulsationFinding
 from core.supply.figures import SupplyFigures
 from service.api.recordings.diagnosis_schemas import Diagnosis
 from service.client.rotor_and_supply import (
@@ -40,15 +39,10 @@ def rotor_shown(diagnosis: Diagnosis | None) -> RotorShown | None:
     """Return what a diagnosis says of the rotor; None where it says nothing."""
     if diagnosis is None or diagnosis.rotor is None:
         return None
-    fields = diagnosis.rotor.model_dump()
-    finding = RotorFinding(**{**fields, "reasons": tuple(fields["reasons"])})
-    gap, swings = None, []
+    finding, gap, swings = diagnosis.rotor, None, []
     if diagnosis.eccentricity is not None and diagnosis.pulsation is not None:
-        fields = diagnosis.eccentricity.model_dump()
-        eccentricity = EccentricityFinding(**{**fields, "reasons": tuple(fields["reasons"])})
-        fields = diagnosis.pulsation.model_dump()
-        pulsation = PulsationFinding(**{**fields, "reasons": tuple(fields["reasons"])})
-        gap, swings = gap_words(eccentricity), swing_words(eccentricity, pulsation)
+        gap = gap_words(diagnosis.eccentricity)
+        swings = swing_words(diagnosis.eccentricity, diagnosis.pulsation)
     return RotorShown(finding.state, rotor_words(finding), sideband_words(finding), finding, gap, swings)
 
 
@@ -56,7 +50,4 @@ def supply_shown(diagnosis: Diagnosis | None) -> SupplyShown | None:
     """Return what a diagnosis says of the supply; None where its record shows nothing of it."""
     if diagnosis is None or diagnosis.supply is None:
         return None
-    fields = diagnosis.supply.model_dump()
-    lists = {name: tuple(value) for name, value in fields.items() if isinstance(value, list)}
-    figures = SupplyFigures(**{**fields, **lists})
-    return SupplyShown(supply_words(figures), figures)
+    return SupplyShown(supply_words(diagnosis.supply), diagnosis.supply)

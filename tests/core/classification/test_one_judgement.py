@@ -4,10 +4,9 @@ from dataclasses import replace
 
 import pytest
 
-from core.classification.record import classify_record
-from core.condition.measuring.observing import examine
 from core.diagnosis.causes import OF_ONE_ASYMMETRY, Cause
 from core.diagnosis.verdict import Verdict
+from core.findings.examining import examine
 from testing.machines.slot_fault_records import USUAL, drawn_case, with_other_parameters
 
 
@@ -20,7 +19,7 @@ def test_shorted_turns_that_are_a_fault_are_in_the_answer(power_kW: float, seed:
     motor = replace(with_other_parameters(case.motor, seed), sensors=USUAL)
     examined = examine(case.steady_recording(), motor)
     assert examined.diagnosis.verdict is Verdict.FAULT
-    found = classify_record(examined)
+    found = examined.classification
     assert found.is_told
     assert Cause.SHORTED_TURNS in found.answer.causes
     assert not any("the verdict differs" in reason for reason in found.reasons)
@@ -30,7 +29,7 @@ def test_a_record_has_one_cause_of_an_asymmetry() -> None:
     case = drawn_case(401, level=0.03, power_kW=7.5, sensors=USUAL)
     case = replace(case, sample_rate_hz=2_000.0, duration_s=0.5)
     examined = examine(case.steady_recording(), replace(case.motor, sensors=USUAL))
-    found = classify_record(examined)
+    found = examined.classification
     assert all(len(one.causes & OF_ONE_ASYMMETRY) < 2 for one in found.explanations)
     told = {one.cause: one.probability for one in found.likelihoods if one.cause in OF_ONE_ASYMMETRY}
     stator = {one.cause: one.probability for one in examined.diagnosis.hypotheses}

@@ -5,9 +5,8 @@ from dataclasses import replace
 import pytest
 
 from core.classification.classification import Classification
-from core.classification.record import classify_record
-from core.condition.measuring.observing import examine
 from core.diagnosis.causes import Cause, Causes
+from core.findings.examining import examine
 from core.machines.parameters import Motor
 from core.recordings import Channel, Quantity
 from testing.machines.cause_records import CauseCase, Sizes
@@ -18,7 +17,7 @@ SEED = 42
 
 def _answer(case: CauseCase) -> Classification:
     known = case.known()
-    return classify_record(examine(case.record(), known))
+    return examine(case.record(), known).classification
 
 
 def _of(*causes: Cause) -> Causes:
@@ -88,7 +87,7 @@ def test_line_voltages_leave_a_voltage_channel_and_turns_open_sooner() -> None:
     samples = record.samples.copy()
     samples[3:] = phases - phases[[1, 2, 0]]
     by_lines = replace(record, samples=samples, channels=record.channels[:3] + channels)
-    found = classify_record(examine(by_lines, known))
+    found = examine(by_lines, known).classification
     assert found.answer.causes == {Cause.SHORTED_TURNS}
 
 

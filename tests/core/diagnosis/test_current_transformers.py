@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from core.condition.measuring.observing import examine
 from core.diagnosis.verdict import Verdict
+from core.findings.examining import examine
 from core.machines.motor_file.error import MotorFileError
 from core.machines.motor_file.reader import read_motor
 from core.machines.motor_file.writer import write_motor

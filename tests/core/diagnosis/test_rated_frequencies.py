@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from core.condition.measuring.observing import examine
 from core.diagnosis.verdict import Verdict
+from core.findings.examining import examine
 from core.machines.parameters import Motor
 from core.signals.clarke import clarke
 from core.signals.phasors import fundamental_frequency

@@ -3,6 +3,7 @@ from dataclasses import fields
 
 import pytest
 
+from core.losses.figures import LossFigures
 from core.quantities import BY_NAME, QUANTITIES, TRENDED, Role, Subject, beside, of_subject
 from core.rotor.finding import RotorFinding
 from core.rotor.swing_findings import EccentricityFinding, PulsationFinding
@@ -13,6 +14,7 @@ FINDINGS = {
     Subject.AIR_GAP: EccentricityFinding,
     Subject.LOAD: PulsationFinding,
     Subject.SUPPLY: SupplyFigures,
+    Subject.LOSSES: LossFigures,
 }
 
 

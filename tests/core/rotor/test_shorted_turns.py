@@ -6,11 +6,11 @@ from math import pi
 import numpy as np
 import pytest
 
-from core.condition.measuring.observing import examine
 from core.diagnosis.acceptance import accept
 from core.diagnosis.causes import Cause
 from core.diagnosis.stator import diagnose_accepted
 from core.diagnosis.verdict import FittedParameters, Verdict
+from core.findings.examining import examine
 from core.machines.candidates import Candidates
 from core.machines.parameters import Connection, Motor
 from core.machines.split_winding import SplitWinding

@@ -2,8 +2,9 @@
 
 import pytest
 
-from core.condition.measuring.observing import Examined, examine
 from core.diagnosis.verdict import Verdict
+from core.findings.examining import examine
+from core.findings.findings import Findings
 from core.machines.parameters import Motor
 from core.rotor.finding import RotorState
 from testing.machines.wound_rotors import HOIST, HOIST_WITH_UNKNOWN_RESISTANCE, WoundRotorCase
@@ -12,7 +13,7 @@ BAD_CONTACT = (0.004, 0.0, 0.0)
 """About a tenth of the resistance of a rotor phase, which is 0.034 ohm."""
 
 
-def _examined(case: WoundRotorCase, motor: Motor, duration_s: float = 4.0) -> Examined:
+def _examined(case: WoundRotorCase, motor: Motor, duration_s: float = 4.0) -> Findings:
     return examine(case.record(duration_s), motor)
 
 

@@ -25,6 +25,7 @@ from service.storage.states import AlarmKind, LinkState
 from testing.service.accounts import token_of
 from testing.service.conditions import FAULT, tell
 from testing.service.database import make_database
+from testing.service.findings import findings_of
 from testing.service.job_runner import RUNNER, register_runner
 from testing.service.links import set_link_state
 from testing.service.observations import OBSERVATION
@@ -82,11 +83,10 @@ def documented_api(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Api]:
     assert claimed is not None
     repository.finish_job(
         claimed.job.id,
-        fault(),
+        findings_of(fault(), observation=OBSERVATION),
         recorded_ns=NOW_NS,
         now_ns=NOW_NS,
         runner=RUNNER,
-        observation=OBSERVATION,
     )
     set_link_state(repository, "A1_SEL710", LinkState.DOWN, "refused", now_ns=NOW_NS)
     repository.register_gateway("here/0", host="here", process_id=1, now_ns=NOW_NS)

@@ -5,6 +5,7 @@ import pytest
 
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
+from testing.service.findings import findings_of
 from testing.service.job_runner import RUNNER
 from testing.service.plants import NOW_NS, fault
 
@@ -74,7 +75,7 @@ def recorded(repository: Repository, store: RecordingStore) -> str:
     claimed = repository.claim_job(now_ns=NOW_NS, runner=RUNNER)
     assert claimed is not None
     job = claimed.job.id
-    repository.finish_job(job, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS + 1, runner=RUNNER)
+    repository.finish_job(job, findings_of(fault()), recorded_ns=NOW_NS, now_ns=NOW_NS + 1, runner=RUNNER)
     return added.recording.id
 
 

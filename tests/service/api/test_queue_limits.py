@@ -11,6 +11,7 @@ from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from service.storage.records import RemoteRecord
 from service.storage.states import JobState
+from testing.service.findings import findings_of
 from testing.service.job_runner import RUNNER
 from testing.service.plants import NOW_NS, healthy
 
@@ -131,5 +132,7 @@ def diagnosed(repository: Repository, store: RecordingStore, content: bytes) -> 
     added = repository.add_recording(stored, motor="PUMP-A1", now_ns=NOW_NS).recording
     claimed = repository.claim_job(now_ns=2**62, runner=RUNNER)
     assert claimed is not None
-    repository.finish_job(claimed.job.id, healthy(), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER)
+    repository.finish_job(
+        claimed.job.id, findings_of(healthy()), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER
+    )
     return added.id

@@ -10,6 +10,7 @@ from sqlalchemy import Connection, Engine, event
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from service.storage.states import AlarmKind, LinkState
+from testing.service.findings import findings_of
 from testing.service.job_runner import RUNNER
 from testing.service.links import set_link_state
 from testing.service.plants import NOW_NS, fault, motor, two_motor_plant
@@ -46,7 +47,9 @@ def recording_id(repository: Repository, store: RecordingStore) -> str:
 def diagnose(repository: Repository) -> None:
     claimed = repository.claim_job(now_ns=NOW_NS, runner=RUNNER)
     assert claimed is not None
-    repository.finish_job(claimed.job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER)
+    repository.finish_job(
+        claimed.job.id, findings_of(fault()), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER
+    )
 
 
 def plan_of(engine: Engine, statement: str) -> list[str]:

@@ -15,6 +15,7 @@ from service.backup.restoring import Place
 from service.configuration.settings import sqlite_url
 from service.recording_store.folder import FolderStore
 from service.storage import Repository, connect
+from testing.service.findings import findings_of
 from testing.service.job_runner import RUNNER
 from testing.service.plants import NOW_NS, SECOND_NS, fault
 from testing.service.postgresql import PostgresServer
@@ -58,7 +59,7 @@ class Data:
         claimed = self.repository.claim_job(now_ns=2**62, runner=RUNNER)
         assert claimed is not None
         self.repository.finish_job(
-            claimed.job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS + SECOND_NS, runner=RUNNER
+            claimed.job.id, findings_of(fault()), recorded_ns=NOW_NS, now_ns=NOW_NS + SECOND_NS, runner=RUNNER
         )
         return added.id
 

@@ -88,11 +88,10 @@ class Here:
         assert isinstance(done, Diagnosed)
         self.repository.finish_job(
             claimed.job.id,
-            done.diagnosis,
+            done.findings,
             recorded_ns=done.recorded_ns,
             now_ns=now_ns,
             runner=RUNNER,
-            operation_remark=done.operation_remark,
         )
         return added.id
 

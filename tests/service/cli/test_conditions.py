@@ -26,6 +26,7 @@ from service.storage import Repository
 from service.storage.states import LinkState
 from testing.service.accounts import TESTER
 from testing.service.conditions import DRIFTING, FAULT, HEALTHY, tell
+from testing.service.findings import findings_of
 from testing.service.job_runner import RUNNER
 from testing.service.links import set_link_state
 from testing.service.observations import HOUR_NS
@@ -102,7 +103,9 @@ def test_health_says_what_to_do_then_why_then_what_the_latest_recording_says(
     repository.add_recording(stored, motor="PUMP-A1", now_ns=NOW_NS)
     claimed = repository.claim_job(now_ns=NOW_NS, runner=RUNNER)
     assert claimed is not None
-    repository.finish_job(claimed.job.id, fault(0.05), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER)
+    repository.finish_job(
+        claimed.job.id, findings_of(fault(0.05)), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER
+    )
     tell(repository, FAULT)
     shown = unframed(mcc("health", "PUMP-A1"))
     in_order = [

@@ -9,22 +9,19 @@ from typing import Any
 import numpy as np
 import pytest
 
-from core.classification.record import classify_record
-from core.condition.measuring.observing import Examined
 from core.diagnosis.causes import Cause
 from core.diagnosis.verdict import Hypothesis
 from core.machines.motor_file.writer import write_motor
 from core.machines.parameters import ParametersSource
 from core.quality.finding import QualityFinding
 from core.recordings import comtrade
-from core.rotor.swing_findings import EccentricityFinding, PulsationFinding
-from core.speed.telling import not_seen
 from service.cli import main
 from service.cli.output import results
 from service.cli.recordings.diagnose import _table
 from testing.machines.cause_records import CauseCase
 from testing.machines.motors import MEDIUM, REFERENCE
 from testing.machines.phase_circuits import Fault, recording, running
+from testing.service.findings import findings_of
 from testing.service.plants import fault, undiagnosable
 from testing.service.rotor_and_supply import SHORT_RECORD
 
@@ -40,18 +37,8 @@ def test_what_keeps_a_record_from_being_diagnosed_is_said_once(capsys: pytest.Ca
             QualityFinding("duration", 1.0, 0.2, "s", passed=True, message="long enough"),
         ),
     )
-    refused = "the quality gate refused the record"
-    examined = Examined(
-        diagnosis,
-        None,
-        SHORT_RECORD,
-        None,
-        EccentricityFinding.untold(refused),
-        PulsationFinding.untold(refused),
-        not_seen(refused),
-    )
-    answer = classify_record(examined)
-    results().print(_table(Path("HR_1.CFG"), Path("motor.toml"), ParametersSource.GIVEN, examined, answer))
+    examined = findings_of(diagnosis, rotor=SHORT_RECORD)
+    results().print(_table(Path("HR_1.CFG"), Path("motor.toml"), ParametersSource.GIVEN, examined))
     shown = capsys.readouterr().out
     assert shown.count(CLIPPED) == 1
     assert "motor.toml" in shown
@@ -68,11 +55,8 @@ def test_the_phase_is_told_alone_or_with_the_other_likely_one(
 ) -> None:
     turns = Hypothesis(Cause.SHORTED_TURNS, 0.99, 30.0, "equivalent level 5.1%")
     diagnosis = replace(fault(), theta_f=None, phase_probabilities=probabilities, hypotheses=(turns,))
-    refused = EccentricityFinding.untold("too short"), PulsationFinding.untold("too short")
-    speed = not_seen("too short")
-    examined = Examined(diagnosis, None, SHORT_RECORD, None, *refused, speed)
-    answer = classify_record(examined)
-    results().print(_table(Path("HR_1.CFG"), Path("motor.toml"), ParametersSource.GIVEN, examined, answer))
+    examined = findings_of(diagnosis, rotor=SHORT_RECORD)
+    results().print(_table(Path("HR_1.CFG"), Path("motor.toml"), ParametersSource.GIVEN, examined))
     lines = capsys.readouterr().out.splitlines()
     told = [line.split("│")[2].strip() for line in lines if line.startswith("│ phase ")]
     assert told == ([] if words is None else [words])

@@ -94,7 +94,7 @@ def test_departures_that_change_no_value_are_warnings_beside_the_same_verdict(
     # The service reads the same way, and keeps the warnings with the diagnosis.
     outcome = diagnose_recording(DiagnosisTask(LocalFile(path), REFERENCE, "hcpa", "split-winding"))
     assert isinstance(outcome, Diagnosed)
-    assert [finding.message for finding in outcome.diagnosis.quality if finding.is_warning] == [
+    assert [finding.message for finding in outcome.findings.diagnosis.quality if finding.is_warning] == [
         one["message"] for one in warnings
     ]
 

@@ -20,6 +20,7 @@ from service.storage import Repository
 from service.storage.records import RelayFindings
 from service.storage.states import LinkState
 from service.timing.backoff import Backoff
+from testing.service.findings import findings_of
 from testing.service.links import set_link_state
 from testing.service.plants import NOW_NS, fault, two_motor_plant
 from tests.service.api.relays.test_relays import ACQUISITION
@@ -121,7 +122,9 @@ def test_the_detection_limit_stands_beside_the_interval_from_all_causes(
     repository.register_runner("runner", installation="here", now_ns=NOW_NS, max_attempts=3)
     claimed = repository.claim_job(now_ns=NOW_NS, runner="runner")
     assert claimed is not None
-    repository.finish_job(claimed.job.id, fault(0.05), recorded_ns=NOW_NS, now_ns=NOW_NS, runner="runner")
+    repository.finish_job(
+        claimed.job.id, findings_of(fault(0.05)), recorded_ns=NOW_NS, now_ns=NOW_NS, runner="runner"
+    )
     app = create_app(ApiContext(Settings(data_directory=tmp_path), repository, store))
     with serving(app) as client:
         assert main(["health", "PUMP-A1", "--url", str(client.base_url)]) == 0

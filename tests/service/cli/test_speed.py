@@ -10,7 +10,7 @@ import pytest
 from core.machines.motor_file.writer import write_motor
 from core.recordings import comtrade
 from service.cli import main
-from tests.core.condition.measuring.test_seen_speed import BARS, HEALTHY, known, with_lines
+from tests.core.findings.test_seen_speed import BARS, HEALTHY, known, with_lines
 
 
 @pytest.fixture(scope="module")

@@ -17,6 +17,7 @@ from service.configuration.settings import Settings
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from testing.service.conditions import FAULT, tell
+from testing.service.findings import findings_of
 from testing.service.job_runner import RUNNER
 from testing.service.plants import NOW_NS, SECOND_NS, fault, healthy, motor
 from testing.service.rotor_and_supply import (
@@ -50,7 +51,7 @@ def recorded(repository: Repository, store: RecordingStore) -> list[str]:
         assert claimed is not None
         recorded_ns = NOW_NS + k * SECOND_NS
         repository.finish_job(
-            claimed.job.id, diagnosis, recorded_ns=recorded_ns, now_ns=recorded_ns, runner=RUNNER
+            claimed.job.id, findings_of(diagnosis), recorded_ns=recorded_ns, now_ns=recorded_ns, runner=RUNNER
         )
         ids.append(added.recording.id)
     return ids
@@ -282,7 +283,9 @@ def test_an_upload_is_waited_for(mcc: Mcc, tmp_path: Path, repository: Repositor
     mcc(*words)
     claimed = repository.claim_job(now_ns=NOW_NS * 2, runner=RUNNER)
     assert claimed is not None
-    repository.finish_job(claimed.job.id, fault(0.02), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER)
+    repository.finish_job(
+        claimed.job.id, findings_of(fault(0.02)), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER
+    )
     for shown in (mcc(*words, "--wait", "60"), mcc(*words)):
         assert "FAN-A2: fault in phase" in shown
     assert json.loads(mcc(*words, "--wait", "60", "--json"))["diagnosis"]["verdict"] == "fault"

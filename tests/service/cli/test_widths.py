@@ -16,6 +16,7 @@ from service.recording_store.folder import FolderStore
 from service.storage import Repository, connect
 from service.storage.states import AlarmKind, LinkState
 from testing.service.conditions import FAULT, tell
+from testing.service.findings import findings_of
 from testing.service.job_runner import RUNNER, register_runner
 from testing.service.links import set_link_state
 from testing.service.plants import NOW_NS, fault, motor, relay
@@ -58,7 +59,9 @@ def client(database_url: str, tmp_path: Path) -> Iterator[httpx.Client]:
     repository.add_recording(store.store({f"{LONG}.CFF": b"samples"}), motor=LONG, now_ns=NOW_NS)
     claimed = repository.claim_job(now_ns=NOW_NS, runner=RUNNER)
     assert claimed is not None
-    repository.finish_job(claimed.job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER)
+    repository.finish_job(
+        claimed.job.id, findings_of(fault()), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER
+    )
     set_link_state(repository, relays[0].name, LinkState.DOWN, REASON, now_ns=NOW_NS)
     repository.raise_alarm(relays[0].name, AlarmKind.FILE_REFUSED, "X.CFG", REASON, now_ns=NOW_NS)
     tell(repository, replace(FAULT, motor=LONG))

@@ -29,6 +29,7 @@ from service.storage import Repository
 from service.storage.records import Backlog
 from service.storage.states import JobState
 from service.timing.backoff import Backoff
+from testing.service.findings import findings_of
 from testing.service.following import FAN, PUMP, Recorder, fold_all
 from testing.service.observations import HOUR_NS
 from testing.service.plants import NOW_NS, healthy
@@ -47,7 +48,7 @@ def observe_as_told(task: DiagnosisTask) -> Outcome:
     with task.recording.opened() as entry:
         at = int(entry.read_text())
     observation = WRONG_CLOCKS[at] if at in WRONG_CLOCKS else RECORDS[at]
-    return Diagnosed(healthy(), observation.time_ns, observation)
+    return Diagnosed(findings_of(healthy(), observation=observation), observation.time_ns)
 
 
 @contextmanager

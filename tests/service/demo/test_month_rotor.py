@@ -9,13 +9,12 @@ import pytest
 import scl
 from core.classification.classification import Classification
 from core.classification.motor import MotorEvidence, classify_motor
-from core.classification.record import classify_record
 from core.classification.record_answer import RecordAnswer
 from core.condition.kinds import Kind, State
-from core.condition.measuring.observing import examine
 from core.diagnosis.acceptance import accept
 from core.diagnosis.causes import Cause
 from core.diagnosis.stator import diagnose_accepted
+from core.findings.examining import examine
 from core.machines.motor_file.reader import motor_from_table
 from core.machines.parameters import Motor
 from core.recordings import Recording
@@ -61,7 +60,7 @@ def answer_of(ied: str, days: Sequence[float]) -> Classification:
     for day in days:
         record, motor = recorded(ied, day)
         examined = examine(record, motor)
-        records.append(RecordAnswer.from_dict(classify_record(examined).as_dict()))
+        records.append(RecordAnswer.from_dict(examined.classification.as_dict()))
         rotor = examined.rotor
         assert rotor.severity_dB is not None
         assert rotor.severity_dB_ci95 is not None

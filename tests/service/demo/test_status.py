@@ -21,6 +21,7 @@ from service.demo.truth import Truth, TruthError
 from service.plant import Plant, PlantMotor, Site
 from service.recording_store.folder import FolderStore
 from service.storage import Repository
+from testing.service.findings import findings_of
 from testing.service.job_runner import RUNNER, register_runner
 from testing.service.plants import NOW_NS, fault, motor, relay
 from testing.service.processes import MOTOR_NAMES, running_service, simulated_plant
@@ -143,7 +144,9 @@ def test_another_plant_is_one_line_and_no_traceback(
         assert claimed is not None
         years_ago_ns = NOW_NS - 10 * 365 * NANOSECONDS_PER_DAY
         job = claimed.job.id
-        repository.finish_job(job, fault(), recorded_ns=years_ago_ns, now_ns=NOW_NS, runner=RUNNER)
+        repository.finish_job(
+            job, findings_of(fault()), recorded_ns=years_ago_ns, now_ns=NOW_NS, runner=RUNNER
+        )
     app = create_app(ApiContext(Settings(data_directory=tmp_path), repository, store))
     with serving(app) as client:
         assert main(["demo-status", "--url", str(client.base_url), "--json"]) == 1

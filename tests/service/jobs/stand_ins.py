@@ -10,6 +10,7 @@ from core.starts.examined import ExaminedStart, StartStress
 from service.jobs.task import Diagnosed, DiagnosisTask, Outcome, Rejected
 from service.jobs.worker_process import follow_service
 from service.recording_store.recording import LocalFile
+from testing.service.findings import findings_of
 from testing.service.plants import NOW_NS, SECOND_NS, fault
 from testing.service.rotor_and_supply import BROKEN_ROTOR, ECCENTRIC_ROTOR, SUPPLY, SWINGING_LOAD
 from testing.service.starts import START
@@ -78,28 +79,28 @@ def act_as_told(task: DiagnosisTask) -> Outcome:
     if told == "slow":
         time.sleep(0.05)
     if told in RESULTS:
-        return Diagnosed(RESULTS[told], NOW_NS)
+        return Diagnosed(findings_of(RESULTS[told]), NOW_NS)
     if told == "broken bars":
-        return Diagnosed(
+        broken = findings_of(
             fault(),
-            NOW_NS,
             rotor=BROKEN_ROTOR,
             supply=SUPPLY,
             eccentricity=ECCENTRIC_ROTOR,
             pulsation=SWINGING_LOAD,
         )
+        return Diagnosed(broken, NOW_NS)
     if told == "hot start":
         stress = StartStress(350.0, None, 0.95, None, "motor file", None)
-        return Diagnosed(fault(), NOW_NS, start=ExaminedStart(START, stress=stress))
+        return Diagnosed(findings_of(fault(), start=ExaminedStart(START, stress=stress)), NOW_NS)
     if told == "year 9999":
-        return Diagnosed(fault(), 253_402_300_799 * SECOND_NS)
+        return Diagnosed(findings_of(fault()), 253_402_300_799 * SECOND_NS)
     if told == "die" or (told == "die once" and not first_time.exists()):
         first_time.touch()
         os.kill(os.getpid(), signal.SIGKILL)
     if told == "hang" or (told == "hang once" and not first_time.exists()):
         first_time.write_text(str(os.getpid()))
         time.sleep(600)
-    return Diagnosed(fault(), NOW_NS)
+    return Diagnosed(findings_of(fault()), NOW_NS)
 
 
 def prepare_when_told() -> None:

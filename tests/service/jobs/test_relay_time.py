@@ -10,6 +10,7 @@ from service.jobs.relay_time import TriggeredRecord, note_relay_time
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from service.storage.records import RemoteRecord
+from testing.service.findings import findings_of
 from testing.service.job_runner import RUNNER
 from testing.service.plants import healthy
 from tests.service.fixtures import database_url, engine, repository, store
@@ -101,6 +102,8 @@ def test_the_record_before_is_the_latest_that_the_service_triggered(
         claimed = repository.claim_job(now_ns=at_ns, runner=RUNNER)
         assert claimed is not None
         recorded_ns = at_ns + off_hours * HOUR_NS
-        repository.finish_job(claimed.job.id, healthy(), recorded_ns=recorded_ns, now_ns=at_ns, runner=RUNNER)
+        repository.finish_job(
+            claimed.job.id, findings_of(healthy()), recorded_ns=recorded_ns, now_ns=at_ns, runner=RUNNER
+        )
     assert repository.preceding_offset_ns(relay, 4 * HOUR_NS) == -12 * HOUR_NS
     assert repository.preceding_offset_ns("A2_SEL710", 4 * HOUR_NS) is None

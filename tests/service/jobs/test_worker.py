@@ -74,7 +74,7 @@ def test_a_relay_may_be_read_leniently_and_each_repair_is_kept(tmp_path: Path) -
     outcome = diagnose_recording(replace(asked, motor=replace(asked.motor, reads_leniently=True)))
     assert isinstance(outcome, Diagnosed)
     assert outcome.recorded_ns == NOW_NS + TRIGGER_INDEX * 250_000
-    repairs = [one for one in outcome.diagnosis.quality if one.message.startswith("repaired: ")]
+    repairs = [one for one in outcome.findings.diagnosis.quality if one.message.startswith("repaired: ")]
     assert [(one.name, one.passed) for one in repairs] == [("file", True)]
     assert "the edition is told by the layout" in repairs[0].message
 
@@ -93,7 +93,7 @@ def test_a_record_is_diagnosed_as_of_its_trigger(tmp_path: Path) -> None:
     outcome = diagnose_recording(task(write(tmp_path / "EVENT", recording())))
     assert isinstance(outcome, Diagnosed)
     assert outcome.recorded_ns == NOW_NS + TRIGGER_INDEX * 250_000
-    assert (outcome.diagnosis.method, outcome.diagnosis.model) == ("hcpa", "split-winding")
+    assert (outcome.findings.diagnosis.method, outcome.findings.diagnosis.model) == ("hcpa", "split-winding")
 
 
 def test_a_table_is_diagnosed_by_its_motors_columns(tmp_path: Path) -> None:
@@ -111,7 +111,7 @@ def test_a_table_is_diagnosed_by_its_motors_columns(tmp_path: Path) -> None:
     assert isinstance(outcome, Diagnosed)
     assert isinstance(by_relay, Diagnosed)
     assert outcome.recorded_ns == nanoseconds("2026-01-31T12:00:00Z")
-    assert outcome.diagnosis.verdict is by_relay.diagnosis.verdict
+    assert outcome.findings.diagnosis.verdict is by_relay.findings.diagnosis.verdict
     assert isinstance(diagnose_recording(asked), Rejected), "without the motor's columns there is no rate"
 
 
@@ -120,28 +120,28 @@ def test_a_start_is_measured(tmp_path: Path) -> None:
     asked = task(write(tmp_path / "START", start))
     outcome = diagnose_recording(replace(asked, motor=REFERENCE))
     assert isinstance(outcome, Diagnosed)
-    assert outcome.start is not None
+    assert outcome.findings.start is not None
     measured = measure_start(start, REFERENCE)
-    assert outcome.start.figures.acceleration_s == pytest.approx(measured.acceleration_s, rel=0.01)
-    assert outcome.start.figures.i2t_A2s == pytest.approx(measured.i2t_A2s, rel=0.01)
-    assert outcome.start.torque is not None
-    assert outcome.start.parameters is not None
+    assert outcome.findings.start.figures.acceleration_s == pytest.approx(measured.acceleration_s, rel=0.01)
+    assert outcome.findings.start.figures.i2t_A2s == pytest.approx(measured.i2t_A2s, rel=0.01)
+    assert outcome.findings.start.torque is not None
+    assert outcome.findings.start.parameters is not None
 
 
 def test_a_record_that_is_no_start_has_nothing_measured_of_one(tmp_path: Path) -> None:
     outcome = diagnose_recording(task(write(tmp_path / "EVENT", recording())))
     assert isinstance(outcome, Diagnosed)
-    assert outcome.start is None
+    assert outcome.findings.start is None
 
 
 def test_a_record_tells_of_rotor_and_supply(tmp_path: Path) -> None:
     record = waveforms(running(REFERENCE, 0.6), noise=0.002)
     outcome = diagnose_recording(replace(task(written(tmp_path / "EVENT", record)), motor=REFERENCE))
     assert isinstance(outcome, Diagnosed)
-    assert outcome.rotor is not None
-    assert outcome.rotor.slip == pytest.approx(0.032, abs=0.002)
-    assert outcome.supply is not None
-    assert outcome.supply.frequency_hz == pytest.approx(50.0, abs=0.01)
+    assert outcome.findings.rotor is not None
+    assert outcome.findings.rotor.slip == pytest.approx(0.032, abs=0.002)
+    assert outcome.findings.supply is not None
+    assert outcome.findings.supply.frequency_hz == pytest.approx(50.0, abs=0.01)
 
 
 def test_a_record_in_local_time_is_diagnosed_as_of_utc(tmp_path: Path) -> None:
@@ -151,8 +151,8 @@ def test_a_record_in_local_time_is_diagnosed_as_of_utc(tmp_path: Path) -> None:
     outcome = diagnose_recording(replace(task(entry), time_zone="Europe/Berlin", near_ns=near_ns))
     assert isinstance(outcome, Diagnosed)
     assert outcome.recorded_ns == nanoseconds("2026-10-25T01:30:00.1Z")
-    assert outcome.observation is None or outcome.observation.time_ns == outcome.recorded_ns
-    told = [finding.message for finding in outcome.diagnosis.quality]
+    assert outcome.findings.observation is None or outcome.findings.observation.time_ns == outcome.recorded_ns
+    told = [finding.message for finding in outcome.findings.diagnosis.quality]
     assert "time: 2026-10-25 02:30:00 is there twice in Europe/Berlin: the second is taken" in told
 
 
@@ -225,7 +225,7 @@ def test_what_the_baseline_shows_is_taken_off(tmp_path: Path) -> None:
     healthy = tuple(LocalFile(record(f"OK{k}", load_level)) for k, load_level in enumerate((0.3, 0.6, 0.9)))
     alone = DiagnosisTask(LocalFile(record("NEW", 0.5)), REFERENCE, "evidence", "coil")
     outcomes = [diagnose_recording(one) for one in (alone, replace(alone, baseline=healthy))]
-    apparent, relative = (one.diagnosis for one in outcomes if isinstance(one, Diagnosed))
+    apparent, relative = (one.findings.diagnosis for one in outcomes if isinstance(one, Diagnosed))
     assert apparent.mu_f is not None
     assert relative.mu_f is not None
     assert relative.mu_f < 0.3 * apparent.mu_f

@@ -16,6 +16,7 @@ from service.storage import NotFoundError, Repository
 from service.storage.errors import FolderGoneError, RecordingInUseError
 from service.storage.records import SERVICE, RecordingEntry, RemoteRecord
 from service.storage.states import DeletedBy, RecordingRequestState, RecordingState
+from testing.service.findings import findings_of
 from testing.service.job_runner import RUNNER
 from testing.service.plants import NOW_NS, SECOND_NS, fault, two_motor_plant
 from tests.service.collector.records.test_listing import Entry, understood
@@ -36,7 +37,9 @@ def pulled(
 def diagnose(repository: Repository, recorded_ns: int = NOW_NS) -> None:
     claimed = repository.claim_job(now_ns=2**62, runner=RUNNER)
     assert claimed is not None
-    repository.finish_job(claimed.job.id, fault(), recorded_ns=recorded_ns, now_ns=NOW_NS, runner=RUNNER)
+    repository.finish_job(
+        claimed.job.id, findings_of(fault()), recorded_ns=recorded_ns, now_ns=NOW_NS, runner=RUNNER
+    )
 
 
 def folders(store: FolderStore) -> set[str]:

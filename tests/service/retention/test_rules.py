@@ -22,6 +22,7 @@ from service.storage import Repository
 from service.storage.records import SERVICE, Amount, Sample
 from service.storage.states import DeletedBy
 from service.timing.wall_clock import SETTLING_S
+from testing.service.findings import findings_of
 from testing.service.job_runner import RUNNER
 from testing.service.plants import NOW_NS, SECOND_NS, fault, healthy, undiagnosable
 
@@ -43,7 +44,9 @@ def uploaded(
     if diagnosis is None:
         repository.reject_recording(claimed.job.id, "cannot be read", now_ns=at_ns, runner=RUNNER)
     else:
-        repository.finish_job(claimed.job.id, diagnosis, recorded_ns=at_ns, now_ns=at_ns, runner=RUNNER)
+        repository.finish_job(
+            claimed.job.id, findings_of(diagnosis), recorded_ns=at_ns, now_ns=at_ns, runner=RUNNER
+        )
     return added.id
 
 
@@ -129,7 +132,9 @@ def test_an_old_record_that_comes_late_pushes_no_newer_one_out(
     claimed = repository.claim_job(now_ns=2**62, runner=RUNNER)
     assert claimed is not None
     recorded_ns = NOW_NS - 100 * DAY_NS
-    repository.finish_job(claimed.job.id, healthy(), recorded_ns=recorded_ns, now_ns=NOW_NS, runner=RUNNER)
+    repository.finish_job(
+        claimed.job.id, findings_of(healthy()), recorded_ns=recorded_ns, now_ns=NOW_NS, runner=RUNNER
+    )
     assert apply(settings_of(tmp_path, healthy_days=1), repository, 1000)["healthy_days"][1] == 0
     assert left(repository) == [late, newest]
 
@@ -159,7 +164,9 @@ def test_a_recording_whose_verdict_changes_meanwhile_stays(
         repository.request_diagnosis(ids[0], now_ns=NOW_NS)
         claimed = repository.claim_job(now_ns=2**62, runner=RUNNER)
         assert claimed is not None
-        repository.finish_job(claimed.job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER)
+        repository.finish_job(
+            claimed.job.id, findings_of(fault()), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER
+        )
 
     interrupted = InterruptedRepository(engine, diagnose_again)
     assert apply(settings_of(tmp_path, healthy_days=1), interrupted, 1000)["healthy_days"][1] == 1
@@ -184,7 +191,9 @@ def test_what_is_no_recording_has_its_times_too(
     repository.request_diagnosis(recording_id, now_ns=NOW_NS)
     claimed = repository.claim_job(now_ns=2**62, runner=RUNNER)
     assert claimed is not None
-    repository.finish_job(claimed.job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER)
+    repository.finish_job(
+        claimed.job.id, findings_of(fault()), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER
+    )
     uploaded(repository, store, 1, None)
     ended = repository.request_recording(MOTOR, now_ns=NOW_NS)
     repository.fail_recording_request(ended.id, "a test", now_ns=NOW_NS)

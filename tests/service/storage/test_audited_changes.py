@@ -12,6 +12,7 @@ from service.recording_store.store import RecordingStore
 from service.storage import NotFoundError, Repository, StateConflictError
 from service.storage.records import Actor, RecordingEntry, Role
 from service.timing.backoff import Backoff
+from testing.service.findings import findings_of
 from testing.service.job_runner import RUNNER
 from testing.service.plants import NOW_NS, healthy, two_motor_plant
 
@@ -89,7 +90,9 @@ def test_a_baseline_chosen_replaced_and_dropped(repository: Repository, store: R
     for _ in recordings:
         claimed = repository.claim_job(now_ns=NOW_NS, runner=RUNNER)
         assert claimed is not None
-        repository.finish_job(claimed.job.id, healthy(), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER)
+        repository.finish_job(
+            claimed.job.id, findings_of(healthy()), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER
+        )
         repository.leave_out(claimed.job.recording_id, "told nothing", "test")
     first, second = sorted(recordings[:3]), sorted(recordings[1:])
     repository.set_baseline(

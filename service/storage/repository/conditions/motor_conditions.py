@@ -17,6 +17,7 @@ from core.condition.kinds import State
 from core.condition.verdict.condition import Condition, unknown_condition
 from core.machines.parameters import Limits
 from core.motor_condition.condition import motor_condition
+from core.motor_condition.efficiency import efficiency_part
 from core.motor_condition.judging import parameters_part, rotor_part, starts_part, supply_part, voltages_agree
 from core.motor_condition.parts import Part, PartCondition
 from core.motor_condition.supply import LATEST_RECORDS, supply_condition
@@ -35,10 +36,11 @@ from service.storage.repository.sessions import Sessions, found, record_of
 
 @dataclass(frozen=True, slots=True)
 class MotorAnswer:
-    """The causes of all that is known of a motor, and the number of records that took part."""
+    """The causes of all that is known of a motor, how many records took part, and its latest loads."""
 
     classification: Classification
     records: int
+    load_levels: Sequence[float]
 
 
 class MotorConditionRows(Sessions):
@@ -76,8 +78,9 @@ def settle_motor_condition(session: Session, row: ConditionRow, *, now_ns: int) 
     if stator.as_of_ns is None:  # no record tells of the stator; some may of the rotor
         row.as_of_ns = latest_time_ns(session, row.motor)
         stator = replace(stator, as_of_ns=row.as_of_ns)
+    supplies, losses = latest_figures(session, row.motor, LATEST_RECORDS)
     supply = supply_condition(
-        latest_figures(session, row.motor, LATEST_RECORDS),
+        supplies,
         _rated_frequency_hz(session, row.motor),
         voltages_agree=voltages_agree(stator),
     )
@@ -93,6 +96,7 @@ def settle_motor_condition(session: Session, row: ConditionRow, *, now_ns: int) 
             supply_part(supply),
             starts_part(starts.latest, starts.change, starts.since_ns),
             parameters_part(_tracked(row)),
+            efficiency_part(losses, answer.load_levels),
         ),
         answer.classification,
     )
@@ -146,7 +150,7 @@ def _answer(session: Session, row: ConditionRow, rotor: RotorCondition, starts: 
         starts=starts.compared,
         tracked=_tracked(row),
     )
-    return MotorAnswer(classify_motor(known), len(answers))
+    return MotorAnswer(classify_motor(known), len(answers), known.load_levels)
 
 
 def _latest_answers(session: Session, motor: str) -> Sequence[Mapping[str, Any]]:

@@ -10,11 +10,13 @@ from sqlalchemy.orm import InstrumentedAttribute
 from core.normal_distribution import NORMAL_95
 from core.quantities import BY_NAME, Quantity, Role, Subject, beside, of_subject
 from service.storage.models import (
+    FIGURE_SUBJECTS,
     DiagnosisRow,
     MotorRow,
     ObservationRow,
     RecordFiguresRow,
     RotorFindingRow,
+    details_of,
 )
 from service.storage.records import Cursor, Page
 from service.storage.records.history import SubjectPoint, TrendPoint
@@ -28,10 +30,8 @@ _ROWS: Final[Mapping[Subject, Row]] = MappingProxyType(
         Subject.STATOR: DiagnosisRow,
         Subject.CONDITION: ObservationRow,
         Subject.ROTOR: RotorFindingRow,
-        Subject.AIR_GAP: RecordFiguresRow,
-        Subject.LOAD: RecordFiguresRow,
-        Subject.SUPPLY: RecordFiguresRow,
         Subject.PARAMETERS: ObservationRow,
+        **dict.fromkeys(FIGURE_SUBJECTS, RecordFiguresRow),
     }
 )
 _WORDS: Final[Mapping[Subject, tuple[Any, ...]]] = MappingProxyType(
@@ -40,10 +40,8 @@ _WORDS: Final[Mapping[Subject, tuple[Any, ...]]] = MappingProxyType(
         Subject.STATOR: (type_coerce(DiagnosisRow.verdict, String), *(null(),) * 4),
         Subject.CONDITION: (null(), ObservationRow.state, ObservationRow.kind, ObservationRow.phase, null()),
         Subject.ROTOR: (null(), RotorFindingRow.state, null(), null(), RotorFindingRow.reasons),
-        Subject.AIR_GAP: (*(null(),) * 4, RecordFiguresRow.air_gap["reasons"]),
-        Subject.LOAD: (*(null(),) * 4, RecordFiguresRow.load["reasons"]),
-        Subject.SUPPLY: (*(null(),) * 4, RecordFiguresRow.supply["reasons"]),
         Subject.PARAMETERS: (null(),) * 5,
+        **{subject: (*(null(),) * 4, details_of(subject)["reasons"]) for subject in FIGURE_SUBJECTS},
     }
 )
 """What is said beside a figure: verdict, state, kind, phase and reasons."""
@@ -135,10 +133,12 @@ def _tells(subject: Subject) -> list[ColumnElement[bool] | InstrumentedAttribute
             return [ObservationRow.state.is_not(None)]
         case Subject.ROTOR:
             return []
-        case Subject.AIR_GAP | Subject.LOAD:  # both are looked for together
-            return [RecordFiguresRow.air_gap.is_not(None)]
-        case Subject.SUPPLY:
-            return [RecordFiguresRow.supply.is_not(None)]
+        case Subject.LOAD:  # looked for together with the air gap, whose index answers
+            return [details_of(Subject.AIR_GAP).is_not(None)]
+        case Subject.LOSSES:  # known where the supply is, whose index answers
+            return [details_of(Subject.SUPPLY).is_not(None), details_of(subject).is_not(None)]
+        case _:
+            return [details_of(subject).is_not(None)]
 
 
 def _figures(quantity: Quantity) -> tuple[Any, ...]:

@@ -1,4 +1,4 @@
-"""What recordings show of air gap, load and supply: kept with their diagnosis, and listed."""
+"""What recordings show of air gap, load, supply and losses: kept with their diagnosis, and listed."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import fields
@@ -7,10 +7,11 @@ from typing import Any, Final, TypeVar
 from sqlalchemy import Select, case, delete, func, select
 from sqlalchemy.orm import Session, aliased
 
+from core.losses.figures import LossFigures
 from core.quantities import Subject, of_subject
 from core.rotor.swing_findings import EccentricityFinding, PulsationFinding
 from core.supply.figures import SupplyFigures
-from service.storage.models import MotorRow, RecordFiguresRow
+from service.storage.models import DETAILS, MotorRow, RecordFiguresRow, details_of
 from service.storage.records import (
     Cursor,
     Page,
@@ -23,25 +24,20 @@ from service.storage.records import (
 from service.storage.repository.sessions import Order, Sessions, columns_of, found, latest_of, page_of, within
 from service.storage.texts import storable
 
-Finding = TypeVar("Finding", EccentricityFinding, PulsationFinding, SupplyFigures)
+Finding = TypeVar("Finding", EccentricityFinding, PulsationFinding, SupplyFigures, LossFigures)
 
-_DETAILS: Final = {
-    Subject.AIR_GAP: RecordFiguresRow.air_gap,
-    Subject.LOAD: RecordFiguresRow.load,
-    Subject.SUPPLY: RecordFiguresRow.supply,
-}
-"""Columns of what is told of a subject beside its figures."""
 _PLACE: Final = (RecordFiguresRow.recording_id, RecordFiguresRow.motor, RecordFiguresRow.time_ns)
 _ORDER: Final[Order] = (RecordFiguresRow.time_ns, RecordFiguresRow.recording_id)
 
 
 def _columns(subject: Subject) -> tuple[Any, ...]:
     """Return the columns of a subject: its figures in the order of the catalogue, and its details."""
-    return (*(getattr(RecordFiguresRow, one.name) for one in of_subject(subject)), _DETAILS[subject])
+    return (*(getattr(RecordFiguresRow, one.name) for one in of_subject(subject)), details_of(subject))
 
 
 _SUPPLY: Final = _columns(Subject.SUPPLY)
 _AIR_GAP: Final = _columns(Subject.AIR_GAP)
+_LOSSES: Final = _columns(Subject.LOSSES)
 _LOAD: Final = _columns(Subject.LOAD)
 
 
@@ -97,7 +93,7 @@ class RecordFigureRows(Sessions):
         figures = aliased(RecordFiguresRow)
         latest = (
             select(figures.recording_id)
-            .where(figures.motor == MotorRow.name, figures.supply.is_not(None))
+            .where(figures.motor == MotorRow.name, getattr(figures, DETAILS[Subject.SUPPLY]).is_not(None))
             .order_by(figures.time_ns.desc(), figures.recording_id.desc())
             .limit(1)
             .scalar_subquery()
@@ -129,7 +125,7 @@ class RecordFigureRows(Sessions):
             counted += [func.sum(case((column > limit, 1), else_=0)), func.max(column)]
         query = select(*counted).where(
             RecordFiguresRow.motor == motor,
-            RecordFiguresRow.supply.is_not(None),
+            details_of(Subject.SUPPLY).is_not(None),
             *within(RecordFiguresRow.time_ns, from_ns, to_ns),
         )
         with self._read() as session:
@@ -144,23 +140,17 @@ def keep_record_figures(
     recording_id: str,
     motor: str,
     time_ns: int,
+    found: Mapping[Subject, object],
     *,
-    eccentricity: EccentricityFinding | None,
-    pulsation: PulsationFinding | None,
-    supply: SupplyFigures | None,
     is_first: bool = False,
 ) -> None:
     """Keep what a recording shows, in place of what an earlier diagnosis found.
 
-    is_first: there was no earlier diagnosis.
+    found: by subject, as dataclasses.  is_first: there was no earlier diagnosis.
     """
     if not is_first:
         forget_record_figures(session, recording_id)
-    values: dict[str, object] = {}
-    if eccentricity is not None and pulsation is not None:
-        values |= _values(Subject.AIR_GAP, eccentricity) | _values(Subject.LOAD, pulsation)
-    if supply is not None:
-        values |= _values(Subject.SUPPLY, supply)
+    values = {name: value for subject, one in found.items() for name, value in _values(subject, one).items()}
     if values:
         session.add(RecordFiguresRow(recording_id=recording_id, motor=motor, time_ns=time_ns, **values))
 
@@ -170,43 +160,52 @@ def forget_record_figures(session: Session, recording_id: str) -> None:
     session.execute(delete(RecordFiguresRow).where(RecordFiguresRow.recording_id == recording_id))
 
 
-def latest_figures(session: Session, motor: str, limit: int) -> tuple[SupplyFigures, ...]:
-    """Return what a motor's latest recordings show of its supply, oldest first."""
-    entries = latest_of(session, _supplies(motor), _ORDER, _supply_entry, limit=limit)
-    return tuple(one.figures for one in entries)
+def latest_figures(
+    session: Session, motor: str, limit: int
+) -> tuple[tuple[SupplyFigures, ...], tuple[LossFigures, ...]]:
+    """Return what a motor's latest recordings show of its supply and of its losses, oldest first."""
+    tells = (RecordFiguresRow.motor == motor, details_of(Subject.SUPPLY).is_not(None))
+    query = select(*_PLACE, *_SUPPLY, *_LOSSES).where(*tells)
+    entries = latest_of(session, query, _ORDER, lambda *row: row[len(_PLACE) :], limit=limit)
+    supplies = (_finding(SupplyFigures, Subject.SUPPLY, one[: len(_SUPPLY)]) for one in entries)
+    losses = (one[len(_SUPPLY) :] for one in entries)
+    told = (_finding(LossFigures, Subject.LOSSES, one) for one in losses if one[-1] is not None)
+    return tuple(supplies), tuple(told)
 
 
-def _values(
-    subject: Subject, finding: EccentricityFinding | PulsationFinding | SupplyFigures
-) -> dict[str, object]:
+def _values(subject: Subject, finding: Any) -> dict[str, object]:
     """Return the columns of a finding."""
-    figures = {one.attribute: one.name for one in of_subject(subject)}
+    quantities = of_subject(subject)
+    in_columns = {one.attribute if one.end is None else one.end[0] for one in quantities}
     others = {
-        field.name: getattr(finding, field.name) for field in fields(finding) if field.name not in figures
+        field.name: getattr(finding, field.name) for field in fields(finding) if field.name not in in_columns
     }
     others["reasons"] = tuple(map(storable, finding.reasons))
-    values = {name: getattr(finding, attribute) for attribute, name in figures.items()}
-    return {**values, _DETAILS[subject].key: others}
+    return {one.name: one.read(finding) for one in quantities} | {DETAILS[subject]: others}
 
 
 def _finding(kind: type[Finding], subject: Subject, values: Sequence[Any]) -> Finding:
     """Return a finding from its columns."""
     *figures, details = values
-    attributes = [one.attribute for one in of_subject(subject)]
-    others: Mapping[str, object] = {
+    named: dict[str, Any] = {
         name: tuple(value) if isinstance(value, list) else value for name, value in details.items()
     }
-    named: dict[str, Any] = {**dict(zip(attributes, figures, strict=True)), **others}
+    for one, value in zip(of_subject(subject), figures, strict=True):
+        if one.end is None:
+            named[one.attribute] = value
+        else:
+            ends: tuple[float, ...] = named.get(one.end[0]) or ()
+            named[one.end[0]] = None if value is None else (*ends, value)
     return kind(**named)
 
 
 def _supplies(motor: str) -> Select[*tuple[Any, ...]]:
-    tells = (RecordFiguresRow.motor == motor, RecordFiguresRow.supply.is_not(None))
+    tells = (RecordFiguresRow.motor == motor, details_of(Subject.SUPPLY).is_not(None))
     return select(*_PLACE, *_SUPPLY).where(*tells)
 
 
 def _swings(motor: str) -> Select[*tuple[Any, ...]]:
-    tells = (RecordFiguresRow.motor == motor, RecordFiguresRow.air_gap.is_not(None))
+    tells = (RecordFiguresRow.motor == motor, details_of(Subject.AIR_GAP).is_not(None))
     return select(*_PLACE, *_AIR_GAP, *_LOAD).where(*tells)
 
 

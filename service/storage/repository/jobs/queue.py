@@ -7,15 +7,10 @@ from collections.abc import Mapping, Sequence
 from sqlalchemy import Select, bindparam, func, literal_column, or_, select, update
 from sqlalchemy.orm import joinedload
 
-from core.classification.classification import Classification
-from core.condition.observation import Observation
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
 from core.diagnosis.verdict import Diagnosis, Verdict, not_finite
+from core.findings.findings import Findings
 from core.operation import AT_REST, EXPECTED
-from core.rotor.finding import RotorFinding
-from core.rotor.swing_findings import EccentricityFinding, PulsationFinding
-from core.starts.examined import ExaminedStart
-from core.supply.figures import SupplyFigures
 from service.audit.actions import AuditAction
 from service.storage.errors import (
     NotFoundError,
@@ -31,7 +26,7 @@ from service.storage.models import (
     RecordingRequestRow,
     RecordingRow,
 )
-from service.storage.records import ClaimedJob, Cursor, DiagnosisEntry, Job, JobResult, Page, RecordLength
+from service.storage.records import ClaimedJob, Cursor, DiagnosisEntry, Job, JobResult, Page
 from service.storage.records.actors import SERVICE, Actor
 from service.storage.repository.audit.entries import note_change
 from service.storage.repository.conditions.conditions import note_standstill
@@ -50,8 +45,6 @@ from service.storage.repository.sessions import Order, Sessions, found, only, pa
 from service.storage.states import JobPriority, JobState, RecordingSource, RecordingState
 from service.storage.texts import storable
 from service.timing.backoff import Backoff
-
-_Part = RotorFinding | SupplyFigures | Classification | EccentricityFinding | PulsationFinding
 
 MOST_DOCUMENT_BYTES = 256 * 1024
 """A diagnosis takes some 10 kB. A larger document says nothing that anybody could read."""
@@ -167,33 +160,21 @@ class JobRows(Sessions):
     def finish_job(
         self,
         job_id: str,
-        diagnosis: Diagnosis,
+        findings: Findings,
         *,
         recorded_ns: int,
         now_ns: int,
         runner: str,
-        observation: Observation | None = None,
         left_out: str | None = None,
-        operation_remark: str | None = None,
-        start: ExaminedStart | None = None,
-        rotor: RotorFinding | None = None,
-        supply: SupplyFigures | None = None,
-        length: RecordLength | None = None,
-        classification: Classification | None = None,
-        eccentricity: EccentricityFinding | None = None,
-        pulsation: PulsationFinding | None = None,
     ) -> bool:
-        """Keep the result: diagnosis, observation, job, recording and requests in one transaction.
+        """Keep what a record tells: diagnosis, figures, job, recording and requests in one transaction.
 
-        Again changes nothing. recorded_ns: trigger time written in the record.  observation: what the record
-        tells of its motor's condition; None where it tells nothing.  left_out: why it does not count there,
-        nor in trends, for people.  operation_remark: why the motor's parameters cannot be estimated from this
-        start.  start: what a start shows; None of other records.  rotor, supply: what the record shows of
-        them; None where it shows nothing.  length: that of the record.  classification: which causes are
-        likely.  eccentricity, pulsation: what it shows of the air gap and of a load that swings.
+        Again changes nothing. recorded_ns: trigger time written in the record.  left_out: why it does not
+        count for its motor's condition, nor in trends, for people.
         Returns False, and keeps nothing, where the job is not the runner's any more.
         Raises NotFoundError, UnstorableDiagnosisError.
         """
+        diagnosis, observation, start = findings.diagnosis, findings.observation, findings.start
         with self._write() as session:
             lock_motor_of(session, job_id)
             row = found(session, JobRow, job_id, "job", lock=True)
@@ -209,9 +190,7 @@ class JobRows(Sessions):
             remark = left_out
             if observation is not None and is_counted_part(session, recording, recorded_ns):
                 observation, remark = None, OF_A_SERIES
-            parts: dict[str, _Part | None] = {"rotor": rotor, "supply": supply}
-            parts |= {"eccentricity": eccentricity, "pulsation": pulsation}
-            document = _document(diagnosis, parts | {"classification": classification})
+            document = _document(findings)
             earlier = session.connection().execute(_NOT_CURRENT, {"of_recording": recording.id})
             is_first = earlier.rowcount == 0  # nothing is kept of the recording that this one replaces
             session.add(_diagnosis_row(row, recording.motor, diagnosis, document, recorded_ns, now_ns))
@@ -220,9 +199,10 @@ class JobRows(Sessions):
             recording.reason = None if remark is None else storable(remark)
             recording.recorded_ns = recorded_ns
             recording.operation = diagnosis.operation
-            recording.operation_remark = None if operation_remark is None else storable(operation_remark)
-            if length is not None:
-                recording.duration_s, recording.pre_trigger_s = length.duration_s, length.pre_trigger_s
+            unused = findings.not_commissioned_from
+            recording.operation_remark = None if unused is None else storable(unused)
+            if findings.duration_s is not None:
+                recording.duration_s, recording.pre_trigger_s = findings.duration_s, findings.pre_trigger_s
             withdraw_clock(recording)
             session.flush()
             diagnose_rows(session, recording.id, now_ns)
@@ -231,14 +211,9 @@ class JobRows(Sessions):
             shown = (session, recording.id, recording.motor, recorded_ns)
             counts = left_out is None
             tells_of_rotor = counts and diagnosis.verdict is not Verdict.UNDIAGNOSABLE
-            keep_rotor_finding(*shown, rotor if tells_of_rotor else None, is_first=is_first)
-            keep_record_figures(
-                *shown,
-                eccentricity=eccentricity if tells_of_rotor else None,
-                pulsation=pulsation if tells_of_rotor else None,
-                supply=supply if counts else None,
-                is_first=is_first,
-            )
+            keep_rotor_finding(*shown, findings.rotor if tells_of_rotor else None, is_first=is_first)
+            figures = findings.beside_stator(of_rotor=tells_of_rotor) if counts else {}
+            keep_record_figures(*shown, figures, is_first=is_first)
             if diagnosis.operation in AT_REST:
                 note_standstill(session, recording.motor, min(recorded_ns, now_ns))
             return True
@@ -350,13 +325,12 @@ def _diagnosis_row(
     )
 
 
-def _document(diagnosis: Diagnosis, parts: Mapping[str, _Part | None]) -> Mapping[str, object]:
+def _document(findings: Findings) -> Mapping[str, object]:
     """Return all that a record shows as a document that every database and reader can hold.
 
     Raises UnstorableDiagnosisError.
     """
-    shown = {name: None if part is None else part.as_dict() for name, part in parts.items()}
-    document = diagnosis.as_dict() | shown
+    document = findings.as_dict()
     way = not_finite(document)
     if way is not None:
         raise UnstorableDiagnosisError(f"{way} is not JSON compliant: it is no finite number")

@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 from core.condition.measuring.impedance import negative_impedance
-from core.condition.measuring.observing import examine, observe
+from core.condition.measuring.observing import observe
 from core.condition.observation import VoltageChannels
 from core.diagnosis.stator import diagnose
 from core.diagnosis.verdict import Verdict
+from core.findings.examining import examine
 from core.machines.parameters import Connection, MachineParameters, Motor
 from core.recordings import Channel, Quantity, Recording, read
 from core.recordings.comtrade.writer import write

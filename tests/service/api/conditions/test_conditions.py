@@ -18,6 +18,7 @@ from service.plant import Schedule
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from testing.service.conditions import DRIFTING, FAULT, HEALTHY, tell
+from testing.service.findings import findings_of
 from testing.service.job_runner import RUNNER
 from testing.service.observations import HOUR_NS, observation
 from testing.service.plants import NOW_NS, fault, healthy, two_motor_plant
@@ -45,11 +46,10 @@ def record(repository: Repository, store: RecordingStore) -> Record:
         assert claimed is not None
         assert repository.finish_job(
             claimed.job.id,
-            diagnosis or healthy(),
+            findings_of(diagnosis or healthy(), observation=observed),
             recorded_ns=observed.time_ns,
             now_ns=NOW_NS,
             runner=RUNNER,
-            observation=observed,
         )
         return added.recording.id
 

@@ -19,6 +19,7 @@ from service.storage.records import ConditionPoint, FoldResult
 from testing.machines.motors import REFERENCE
 from testing.machines.phase_circuits import Fault, recording, running
 from testing.service.accounts import TESTER
+from testing.service.findings import findings_of
 from testing.service.job_runner import RUNNER
 from testing.service.observations import observation
 from testing.service.plants import NOW_NS, SECOND_NS, healthy, undiagnosable, watch
@@ -57,11 +58,10 @@ class Plant:
             recorded_ns = NOW_NS - number * SECOND_NS
             self._repository.finish_job(
                 claimed.job.id,
-                diagnosis,
+                findings_of(diagnosis, observation=observation),
                 recorded_ns=recorded_ns,
                 now_ns=NOW_NS,
                 runner=RUNNER,
-                observation=observation,
             )
         return added.id
 

@@ -8,6 +8,7 @@ from core.machines.stator_winding import StatorWinding, WindingKind
 from service.condition.motor_data import document_of
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
+from testing.service.findings import findings_of
 from testing.service.job_runner import RUNNER
 from testing.service.plants import NOW_NS, SECOND_NS, fault, two_motor_plant, undiagnosable
 
@@ -25,7 +26,7 @@ def diagnosed(repository: Repository, store: RecordingStore) -> list[str]:
         assert claimed is not None
         repository.finish_job(
             claimed.job.id,
-            diagnosis,
+            findings_of(diagnosis),
             recorded_ns=NOW_NS + i * SECOND_NS,
             now_ns=NOW_NS + SECOND_NS,
             runner=RUNNER,

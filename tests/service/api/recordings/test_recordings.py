@@ -13,6 +13,7 @@ from service.api import ApiContext, create_app
 from service.recording_store.folder import FolderStore
 from service.storage import Repository
 from service.storage.records import RemoteRecord
+from testing.service.findings import findings_of
 from testing.service.job_runner import RUNNER
 from testing.service.plants import NOW_NS, SECOND_NS, fault, stored_document
 from testing.service.small_record import CFG, DAT, IA
@@ -125,7 +126,7 @@ def test_details_with_files_and_diagnosis(
     claimed = repository.claim_job(now_ns=2**62, runner=RUNNER)
     assert claimed is not None
     repository.finish_job(
-        claimed.job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS + SECOND_NS, runner=RUNNER
+        claimed.job.id, findings_of(fault()), recorded_ns=NOW_NS, now_ns=NOW_NS + SECOND_NS, runner=RUNNER
     )
     document = client.get(f"/api/v1/recordings/{recording}").json()
     assert document["diagnosis"] == stored_document(fault())
@@ -158,7 +159,9 @@ def test_a_recording_can_be_diagnosed_again(
     assert (only_modelled["method"], only_modelled["model"]) == ("hybrid", "split-winding")
     claimed = repository.claim_job(now_ns=2**62, runner=RUNNER)
     assert claimed is not None
-    repository.finish_job(claimed.job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER)
+    repository.finish_job(
+        claimed.job.id, findings_of(fault()), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER
+    )
     runs = client.get(url).json()["items"]
     assert len(runs) == 5
     assert [run["result"] for run in runs if run["state"] == "done"] == [stored_document(fault())]
@@ -170,7 +173,9 @@ def test_a_diagnosis_the_core_does_not_know_leaves_the_recording_as_it_is(
 ) -> None:
     claimed = repository.claim_job(now_ns=2**62, runner=RUNNER)
     assert claimed is not None
-    repository.finish_job(claimed.job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER)
+    repository.finish_job(
+        claimed.job.id, findings_of(fault()), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER
+    )
     before = client.get(f"/api/v1/recordings/{recording}").json()
     refused = client.post(f"/api/v1/recordings/{recording}/diagnoses", json={field: "guess"})
     assert refused.status_code == 422
@@ -212,7 +217,9 @@ def test_a_waveform_has_the_time_that_its_diagnosis_found(
     claimed = repository.claim_job(now_ns=2**62, runner=RUNNER)
     assert claimed is not None
     utc_ns = nanoseconds("2026-11-21T05:00:00.002Z")
-    repository.finish_job(claimed.job.id, fault(), recorded_ns=utc_ns, now_ns=NOW_NS, runner=RUNNER)
+    repository.finish_job(
+        claimed.job.id, findings_of(fault()), recorded_ns=utc_ns, now_ns=NOW_NS, runner=RUNNER
+    )
     waveform = client.get(f"/api/v1/recordings/{recording}/waveform").json()
     assert waveform["trigger_time"] == "2026-11-21T05:00:00.002000000Z"
     assert waveform["start_time"] == "2026-11-21T05:00:00.000000000Z"

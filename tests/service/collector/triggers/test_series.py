@@ -52,12 +52,10 @@ def diagnose_all(bench: Bench) -> None:
         assert isinstance(made, Diagnosed), made
         assert repository.finish_job(
             claimed.job.id,
-            made.diagnosis,
+            made.findings,
             recorded_ns=made.recorded_ns,
             now_ns=time.time_ns(),
             runner=RUNNER,
-            rotor=made.rotor,
-            length=made.length,
         )
 
 

@@ -10,6 +10,7 @@ from service.storage.errors import RunnerEndedError, UnstorableDiagnosisError
 from service.storage.records import ClaimedJob, RemoteRecord
 from service.storage.states import JobState, RecordingRequestState, RecordingState
 from service.timing.backoff import Backoff
+from testing.service.findings import findings_of
 from testing.service.job_runner import RUNNER
 from testing.service.plants import NOW_NS, SECOND_NS, fault, stored_document, undiagnosable
 
@@ -67,7 +68,11 @@ def test_a_result_ends_job_recording_and_request(repository: Repository, recordi
     job_id = claim(repository).job.id
     for _ in range(2):
         repository.finish_job(
-            job_id, fault(), recorded_ns=NOW_NS - SECOND_NS, now_ns=NOW_NS + SECOND_NS, runner=RUNNER
+            job_id,
+            findings_of(fault()),
+            recorded_ns=NOW_NS - SECOND_NS,
+            now_ns=NOW_NS + SECOND_NS,
+            runner=RUNNER,
         )
     assert repository.job(recording_id, job_id).job.state is JobState.DONE
     recording = repository.recording(recording_id)
@@ -136,7 +141,9 @@ def test_a_start_leaves_the_jobs_of_other_installations_alone(
     assert claimed is not None
     assert register(repository, "ours") == 0
     assert repository.claim_job(now_ns=NOW_NS, runner="ours") is None
-    assert repository.finish_job(claimed.job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS, runner="theirs")
+    assert repository.finish_job(
+        claimed.job.id, findings_of(fault()), recorded_ns=NOW_NS, now_ns=NOW_NS, runner="theirs"
+    )
 
 
 def test_what_a_runner_without_its_lease_brings_is_not_kept(
@@ -160,13 +167,17 @@ def test_what_a_runner_without_its_lease_brings_is_not_kept(
             assert repository.claim_job(now_ns=NOW_NS, runner="ours") is not None
         job_id = claimed.job.id
         before = repository.job(recording_id, job_id)
-        late = partial(repository.finish_job, job_id, fault(0.9), recorded_ns=NOW_NS, now_ns=NOW_NS)
+        late = partial(
+            repository.finish_job, job_id, findings_of(fault(0.9)), recorded_ns=NOW_NS, now_ns=NOW_NS
+        )
         assert not late(runner="theirs")
         repository.reject_recording(job_id, "late", now_ns=NOW_NS, runner="theirs")
         repository.retry_or_fail_job(job_id, "late", now_ns=NOW_NS, runner="theirs", **AGAIN)
         repository.release_job(job_id, runner="theirs")
         assert repository.job(recording_id, job_id) == before
-    assert repository.finish_job(job_id, fault(0.05), recorded_ns=NOW_NS, now_ns=NOW_NS, runner="ours")
+    assert repository.finish_job(
+        job_id, findings_of(fault(0.05)), recorded_ns=NOW_NS, now_ns=NOW_NS, runner="ours"
+    )
     (point,) = repository.trend("PUMP-A1", "mu_f", limit=10).items
     assert point.value == 0.05
 
@@ -178,12 +189,14 @@ def test_a_released_job_has_lost_no_attempt(repository: Repository, recording_id
 
 def test_the_latest_diagnosis_of_a_recording_counts(repository: Repository, recording_id: str) -> None:
     repository.finish_job(
-        claim(repository).job.id, fault(0.05), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER
+        claim(repository).job.id, findings_of(fault(0.05)), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER
     )
     job = repository.request_diagnosis(recording_id, method="genetic", now_ns=NOW_NS + 1)
     claimed = claim(repository, NOW_NS + 1)
     assert (claimed.job.id, claimed.job.method) == (job.id, "genetic")
-    repository.finish_job(job.id, fault(0.06), recorded_ns=NOW_NS, now_ns=NOW_NS + 2, runner=RUNNER)
+    repository.finish_job(
+        job.id, findings_of(fault(0.06)), recorded_ns=NOW_NS, now_ns=NOW_NS + 2, runner=RUNNER
+    )
     (point,) = repository.trend("PUMP-A1", "mu_f", limit=10).items
     assert point.value == 0.06
     diagnosed = repository.jobs(recording_id, limit=10).items
@@ -191,7 +204,9 @@ def test_the_latest_diagnosis_of_a_recording_counts(repository: Repository, reco
 
 
 def test_a_failed_repetition_leaves_the_earlier_diagnosis(repository: Repository, recording_id: str) -> None:
-    repository.finish_job(claim(repository).job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER)
+    repository.finish_job(
+        claim(repository).job.id, findings_of(fault()), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER
+    )
     repository.request_diagnosis(recording_id, now_ns=NOW_NS)
     repository.reject_recording(claim(repository).job.id, "no longer readable", now_ns=NOW_NS, runner=RUNNER)
     assert repository.recording(recording_id).state is RecordingState.DIAGNOSED
@@ -210,7 +225,7 @@ def test_a_result_that_is_no_json_is_refused(repository: Repository, recording_i
     job_id = claim(repository).job.id
     broken = replace(fault(), residual_rms_A=float("nan"))
     with pytest.raises(UnstorableDiagnosisError, match="not JSON compliant"):
-        repository.finish_job(job_id, broken, recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER)
+        repository.finish_job(job_id, findings_of(broken), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER)
     assert repository.job(recording_id, job_id).job.state is JobState.RUNNING
 
 
@@ -219,7 +234,11 @@ def test_trend_and_health(repository: Repository, store: RecordingStore) -> None
         repository.add_recording(store.store({f"U{i}.CFF": bytes([i])}), motor="FAN-A2", now_ns=NOW_NS + i)
         job_id = claim(repository, NOW_NS + i).job.id
         repository.finish_job(
-            job_id, diagnosis, recorded_ns=NOW_NS + i * SECOND_NS, now_ns=NOW_NS + 9, runner=RUNNER
+            job_id,
+            findings_of(diagnosis),
+            recorded_ns=NOW_NS + i * SECOND_NS,
+            now_ns=NOW_NS + 9,
+            runner=RUNNER,
         )
     points = repository.trend("FAN-A2", "mu_f", limit=10).items
     assert [(p.time_ns, p.value, str(p.verdict)) for p in points] == [
@@ -255,7 +274,7 @@ def test_records_of_relays_come_first_and_repetitions_last(
 ) -> None:
     old = repository.add_recording(store.store({"OLD.CFF": b"old"}), motor="PUMP-A1", now_ns=NOW_NS)
     job_id = claim(repository).job.id
-    repository.finish_job(job_id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER)
+    repository.finish_job(job_id, findings_of(fault()), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER)
     for _ in range(3):
         repository.request_diagnosis(old.recording.id, now_ns=NOW_NS)
     uploaded = repository.add_recording(
@@ -277,7 +296,9 @@ def test_the_last_recording_is_the_one_made_last(repository: Repository, store: 
         stored = store.store({f"U{number}.CFF": bytes([number])})
         repository.add_recording(stored, motor="FAN-A2", now_ns=NOW_NS + number)
         job_id = claim(repository, NOW_NS + number).job.id
-        repository.finish_job(job_id, fault(), recorded_ns=recorded_ns, now_ns=NOW_NS + number, runner=RUNNER)
+        repository.finish_job(
+            job_id, findings_of(fault()), recorded_ns=recorded_ns, now_ns=NOW_NS + number, runner=RUNNER
+        )
     last = repository.health("FAN-A2").last_recording
     assert last is not None
     assert last.name == "U0", "U1 was uploaded later, and was made before it"

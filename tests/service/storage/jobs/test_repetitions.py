@@ -7,6 +7,7 @@ from service.storage import Repository
 from service.storage.records.actors import SERVICE
 from service.storage.states import JobState
 from testing.service.diagnosed import add_diagnosed
+from testing.service.findings import findings_of
 from testing.service.job_runner import RUNNER
 from testing.service.plants import NOW_NS, SECOND_NS, healthy
 
@@ -75,7 +76,9 @@ def test_jobs_that_have_ended_are_told(repository: Repository, recordings: list[
     jobs = [repository.request_diagnosis(one, now_ns=now_ns) for one in recordings]
     claimed = repository.claim_job(now_ns=now_ns, runner=RUNNER)
     assert claimed is not None
-    repository.finish_job(claimed.job.id, healthy(), recorded_ns=NOW_NS, now_ns=now_ns, runner=RUNNER)
+    repository.finish_job(
+        claimed.job.id, findings_of(healthy()), recorded_ns=NOW_NS, now_ns=now_ns, runner=RUNNER
+    )
     ended = repository.ended_jobs([*(job.id for job in jobs), "deleted with its recording"])
     assert {id_: job and job.state for id_, job in ended.items()} == {
         claimed.job.id: JobState.DONE,

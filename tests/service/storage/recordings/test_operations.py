@@ -11,6 +11,7 @@ from service.storage import Repository
 from service.storage.repository.recordings.kept_recordings import Keeping
 from service.storage.repository.recordings.retention import ExpiredRecordings
 from service.storage.states import RecordingState
+from testing.service.findings import findings_of
 from testing.service.job_runner import RUNNER
 from testing.service.plants import NOW_NS, SECOND_NS, fault
 
@@ -40,11 +41,10 @@ class Recorded:
         assert claimed is not None
         self.repository.finish_job(
             claimed.job.id,
-            of(operation),
+            findings_of(of(operation), not_commissioned_from=remark),
             recorded_ns=now_ns,
             now_ns=now_ns,
             runner=RUNNER,
-            operation_remark=remark,
         )
         return added.recording.id
 

@@ -6,6 +6,7 @@ from service.recording_store.store import RecordingStore
 from service.storage import NotFoundError, Repository
 from service.storage.records import ClockNote, ClockReading, RecordingEntry, RemoteRecord
 from service.storage.states import ClockQuality, RecordingRequestState, RecordingState
+from testing.service.findings import findings_of
 from testing.service.job_runner import RUNNER
 from testing.service.plants import NOW_NS, SECOND_NS, fault
 
@@ -105,7 +106,9 @@ def test_a_recording_diagnosed_before_ends_a_request_that_gets_it(
     repository.add_recording(record(store), motor="PUMP-A1", now_ns=NOW_NS)
     claimed = repository.claim_job(now_ns=NOW_NS, runner=RUNNER)
     assert claimed is not None
-    repository.finish_job(claimed.job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER)
+    repository.finish_job(
+        claimed.job.id, findings_of(fault()), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER
+    )
     request = repository.request_recording("PUMP-A1", now_ns=NOW_NS)
     repository.add_recording(
         record(store),
@@ -285,7 +288,11 @@ def test_a_record_of_another_day_loses_the_reading(
     assert claimed is not None
     by_the_relay_s_clock_ns = NOW_NS + OFFSET_NS + made_s * SECOND_NS
     repository.finish_job(
-        claimed.job.id, fault(), recorded_ns=by_the_relay_s_clock_ns, now_ns=NOW_NS, runner=RUNNER
+        claimed.job.id,
+        findings_of(fault()),
+        recorded_ns=by_the_relay_s_clock_ns,
+        now_ns=NOW_NS,
+        runner=RUNNER,
     )
     found = repository.recording(stored.id)
     assert (found.clock_offset_ns, found.clock_quality) == (

@@ -8,6 +8,7 @@ from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from service.storage.records import RemoteRecord
 from service.storage.repository.recordings.series import OF_A_SERIES
+from testing.service.findings import findings_of
 from testing.service.job_runner import RUNNER
 from testing.service.observations import OBSERVATION
 from testing.service.plants import NOW_NS, SECOND_NS, healthy
@@ -34,9 +35,14 @@ def diagnose(repository: Repository, times_ns: dict[str, int]) -> None:
         claimed[one.job.recording_id] = one.job.id
     for number, (recording, time_ns) in enumerate(times_ns.items()):
         repository.finish_job(
-            claimed[recording], healthy(), recorded_ns=time_ns, now_ns=NOW_NS, runner=RUNNER,
-            observation=replace(OBSERVATION, time_ns=time_ns, load_level=0.5 + 0.01 * number),
-        )  # fmt: skip
+            claimed[recording],
+            findings_of(
+                healthy(), observation=replace(OBSERVATION, time_ns=time_ns, load_level=0.5 + 0.01 * number)
+            ),
+            recorded_ns=time_ns,
+            now_ns=NOW_NS,
+            runner=RUNNER,
+        )
 
 
 def counted(repository: Repository, recordings: list[str]) -> list[str]:

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.condition.measuring import beside_stator
-from core.condition.measuring.observing import examine
 from core.diagnosis.verdict import Verdict
+from core.findings import beside_stator
+from core.findings.examining import examine
 from core.recordings import Recording
 from core.rotor.finding import RotorFinding, RotorState
 from core.supply.figures import SupplyFigures

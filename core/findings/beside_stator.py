@@ -1,8 +1,10 @@
 """Rotor, supply and load of a record, beside its stator: no error of theirs takes the diagnosis away."""
 
-from core.condition.measuring.seen_speed import speed_of
 from core.diagnosis.acceptance import Acceptance, Accepted
 from core.diagnosis.verdict import Diagnosis, not_finite
+from core.findings.seen_speed import speed_of
+from core.losses.figures import LossFigures
+from core.losses.measuring import measure_losses
 from core.machines.parameters import Motor
 from core.operation import Operation
 from core.recordings import Recording, RecordingError
@@ -21,6 +23,7 @@ from core.supply.measuring import measure_supply
 
 NO_ROTOR = "the figures of the rotor cannot be computed"
 NO_SPEED = "the speed cannot be computed"
+NO_LOSSES = "the losses cannot be computed"
 NO_SWINGS = "the figures of the swings cannot be computed"
 _NOT_COMPUTABLE = (ValueError, ArithmeticError)
 """Errors of figures; SignalError and numpy's LinAlgError are among them."""
@@ -59,12 +62,12 @@ def rotor_and_swings_of(
     """
     if accepted is None:
         refused = "the quality gate refused the record"
-        return _unsupported(recording, refused), *_nothing_of_swings(refused)
+        return RotorFinding.untold(refused, recording.duration_s), *_nothing_of_swings(refused)
     try:
         recorded = baseband_of(accepted)
     except _NOT_COMPUTABLE as error:
         return (
-            _unsupported(recording, f"{NO_ROTOR}: {error}"),
+            RotorFinding.untold(f"{NO_ROTOR}: {error}", recording.duration_s),
             *_nothing_of_swings(f"{NO_SWINGS}: {error}"),
         )
     rotor = _rotor(recording, recorded, accepted, diagnosis, speed)
@@ -81,11 +84,11 @@ def _rotor(
     try:
         finding = examine_rotor(recorded, accepted, diagnosis, speed)
     except _NOT_COMPUTABLE as error:
-        return _unsupported(recording, f"{NO_ROTOR}: {error}")
+        return RotorFinding.untold(f"{NO_ROTOR}: {error}", recording.duration_s)
     impossible = not_finite(finding.as_dict())
-    return (
-        finding if impossible is None else _unsupported(recording, f"{NO_ROTOR}: {impossible} is not finite")
-    )
+    if impossible is None:
+        return finding
+    return RotorFinding.untold(f"{NO_ROTOR}: {impossible} is not finite", recording.duration_s)
 
 
 def _swings(
@@ -176,18 +179,36 @@ def supply_of(
     return None, f"the figures of the supply cannot be computed: {impossible} is not finite"
 
 
-def _unsupported(recording: Recording, reason: str) -> RotorFinding:
-    return RotorFinding(
-        state=RotorState.UNSUPPORTED,
-        lower_sideband_dB=None,
-        upper_sideband_dB=None,
-        severity_dB=None,
-        severity_dB_ci95=None,
-        detection_limit_dB=None,
-        slip=None,
-        load_level=None,
-        load_bin=None,
-        duration_s=recording.duration_s,
-        load_oscillation_dB=None,
-        reasons=(reason,),
-    )
+def losses_of(
+    motor: Motor,
+    diagnosis: Diagnosis,
+    supply: SupplyFigures | None,
+    rotor: RotorFinding,
+    speed: SpeedFinding,
+) -> LossFigures:
+    """Tell the losses of the motor; where they cannot be computed, a reason says so.
+
+    Parameters
+    ----------
+    motor : Motor
+        The motor.
+    diagnosis : Diagnosis
+        What the record shows of the stator.
+    supply : SupplyFigures or None
+        What it shows of the supply.
+    rotor : RotorFinding
+        What it shows of the cage.
+    speed : SpeedFinding
+        Its speed.
+
+    Returns
+    -------
+    LossFigures
+        The losses.
+    """
+    try:
+        figures = measure_losses(motor, diagnosis, supply, rotor, speed)
+    except _NOT_COMPUTABLE as error:
+        return LossFigures.untold(f"{NO_LOSSES}: {error}")
+    impossible = not_finite(figures.as_dict())
+    return figures if impossible is None else LossFigures.untold(f"{NO_LOSSES}: {impossible} is not finite")

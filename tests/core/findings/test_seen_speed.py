@@ -6,7 +6,8 @@ from math import pi
 import numpy as np
 import pytest
 
-from core.condition.measuring.observing import Examined, examine
+from core.findings.examining import examine
+from core.findings.findings import Findings
 from core.machines.parameters import Motor
 from core.recordings import Recording
 from core.rotor.finding import RotorState
@@ -45,7 +46,7 @@ def with_lines(case: RotorCase, duration_s: float) -> tuple[Recording, float]:
     return replace(record, samples=samples), slip
 
 
-def slip_of(found: Examined) -> float:
+def slip_of(found: Findings) -> float:
     assert found.speed.slip is not None
     return found.speed.slip
 

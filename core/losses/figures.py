@@ -1,0 +1,94 @@
+"""What a record tells of a motor's losses."""
+
+from dataclasses import dataclass, field, fields
+from typing import Self
+
+
+@dataclass(frozen=True, slots=True)
+class LossFigures:
+    """Losses of a motor in one record; figures are None where it cannot tell them.
+
+    Parameters
+    ----------
+    efficiency : float or None
+        Power at the shaft over power drawn.
+    efficiency_ci95 : tuple of float or None
+        Its 95 % interval: resistances, slip, and the losses that no current tells.
+    output_W : float or None
+        Power at the shaft [W].
+    load_class : int or None
+        Tenth of the rated power at the shaft, 0 to 11: efficiencies compare within one.
+    losses_W : float or None
+        All losses [W].
+    losses_W_ci95 : tuple of float or None
+        Their 95 % interval [W].
+    stator_copper_W, rotor_copper_W : float or None
+        In the windings of the stator with their shorted turns, and in the rotor [W].
+    iron_W, friction_W, stray_W : float or None
+        In the core, by friction and windage, and stray load losses [W].
+    turns_loss_W : float or None
+        What shorted turns cost; zero where none are found [W].
+    unbalance_loss_W : float or None
+        What the unbalance of the supply costs [W].
+    voltage_loss_W : float or None
+        What it costs that the voltage is not the rated one; below zero where that saves [W].
+    rotor_loss_W : float or None
+        What a faulty cage costs; zero where none is found [W].
+    reasons : tuple of str
+        What limits the figures, in words.
+    """
+
+    efficiency: float | None = None
+    efficiency_ci95: tuple[float, float] | None = None
+    output_W: float | None = None
+    load_class: int | None = None
+    losses_W: float | None = None
+    losses_W_ci95: tuple[float, float] | None = None
+    stator_copper_W: float | None = None
+    rotor_copper_W: float | None = None
+    iron_W: float | None = None
+    friction_W: float | None = None
+    stray_W: float | None = None
+    turns_loss_W: float | None = None
+    unbalance_loss_W: float | None = None
+    voltage_loss_W: float | None = None
+    rotor_loss_W: float | None = None
+    reasons: tuple[str, ...] = field(default=(), kw_only=True)
+
+    @property
+    def extra_W(self) -> dict[str, float]:
+        """What faults and supply add to the losses, by cause in words, where they add any."""
+        found = {
+            "shorted turns": self.turns_loss_W,
+            "unbalance of the supply": self.unbalance_loss_W,
+            "voltage off its rated value": self.voltage_loss_W,
+            "faulty cage": self.rotor_loss_W,
+        }
+        return {words: watts for words, watts in found.items() if watts is not None and watts > 0.0}
+
+    @classmethod
+    def untold(cls, reason: str) -> Self:
+        """Return the figures of a record that tells nothing.
+
+        Parameters
+        ----------
+        reason : str
+            Why, in words.
+
+        Returns
+        -------
+        LossFigures
+            Without figures.
+        """
+        return cls(reasons=(reason,))
+
+    def as_dict(self) -> dict[str, object]:
+        """Return the part `losses` of the document that `mcc diagnose --json` prints.
+
+        Returns
+        -------
+        dict of str to object
+            The figures by name; tuples are lists.
+        """
+        values = {one.name: getattr(self, one.name) for one in fields(self)}
+        return {name: list(value) if isinstance(value, tuple) else value for name, value in values.items()}
