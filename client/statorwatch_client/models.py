@@ -40,6 +40,7 @@ AlarmKind: TypeAlias = Literal[
     "supply-fault",
     "supply-watch",
     "uneven-air-gap",
+    "inefficient",
     "parameter-drift",
     "hard-starts",
     "changed-starts",
@@ -245,6 +246,21 @@ Cause: TypeAlias = Literal[
 ]
 
 
+class CauseCost(TypedDict):
+    """
+    What one cause adds to the losses, the median of the latest records; below zero where it saves some.
+
+    growth_W_per_year: null of too few records (..._ci95: 95 % interval, by the scatter of the records).
+    """
+
+    cause: str
+    loss_W: float
+    energy_kWh_per_year: float
+    cost_per_year: float | None
+    growth_W_per_year: float | None
+    growth_W_per_year_ci95: tuple[float, float] | None
+
+
 ChangeState: TypeAlias = Literal["as-before", "changed", "not-told-apart", "unknown"]
 
 
@@ -313,12 +329,26 @@ DriftCause: TypeAlias = Literal["winding-hot", "ratio", "magnetising", "leakage"
 
 class EccentricityFinding(TypedDict):
     """
-    What a recording shows of the air gap; figures are null where it cannot tell them.
+    What a record tells of the air gap; figures are None where it cannot tell them.
 
-    permeance_ripple: of the gap's permeance, once a turn, over its mean, with its standard_deviation.
-    detection_limit: ripple that nine of ten such recordings show. lower_sideband_dB, upper_sideband_dB:
-    currents at f - f_r and f + f_r as measured, over the fundamental. load_torque: torque of the load that
-    swings once a turn, over the rated one, with load_torque_deviation. rotation_frequency_hz: f_r.
+    Parameters
+    ----------
+    permeance_ripple : float or None
+        Amplitude of the relative ripple of the gap's permeance, once a turn.
+    standard_deviation : float or None
+        Its standard deviation: noise, and the parameters of the model.
+    detection_limit : float or None
+        Ripple that nine of ten such records show.
+    lower_sideband_dB, upper_sideband_dB : float or None
+        Current at f - f_r and f + f_r as measured, over the fundamental [dB].
+    load_torque : float or None
+        Torque of the load that swings once a turn, its amplitude over rated torque.
+    load_torque_deviation : float or None
+        Its standard deviation, over rated torque.
+    rotation_frequency_hz : float or None
+        Frequency f_r at which the lines stand [Hz].
+    reasons : tuple of str
+        What limits the figures, in words.
     """
 
     permeance_ripple: float | None
@@ -589,6 +619,19 @@ class LoadClass(TypedDict):
     energy_kWh: float
 
 
+class LoadEfficiency(TypedDict):
+    """
+    The efficiency at one load: of so many records, the median of each figure.
+
+    load_class: tenth of the rated power at the shaft, 0 to 11.
+    """
+
+    load_class: int
+    records: int
+    efficiency: float
+    efficiency_ci95: tuple[float, float]
+
+
 class LoadImport(TypedDict):
     """
     What became of the rows of a load profile.
@@ -624,6 +667,76 @@ class LoginWays(TypedDict):
     password: bool
     oidc: str | None
     notice: str | None
+
+
+class LossFigures(TypedDict):
+    """
+    Losses of a motor in one record; figures are None where it cannot tell them.
+
+    Parameters
+    ----------
+    efficiency : float or None
+        Power at the shaft over power drawn.
+    efficiency_ci95 : tuple of float or None
+        Its 95 % interval: resistances, slip, and the losses that no current tells.
+    output_W : float or None
+        Power at the shaft [W].
+    load_class : int or None
+        Tenth of the rated power at the shaft, 0 to 11: efficiencies compare within one.
+    losses_W : float or None
+        All losses [W].
+    losses_W_ci95 : tuple of float or None
+        Their 95 % interval [W].
+    stator_copper_W, rotor_copper_W : float or None
+        In the windings of the stator with their shorted turns, and in the rotor [W].
+    iron_W, friction_W, stray_W : float or None
+        In the core, by friction and windage, and stray load losses [W].
+    turns_loss_W : float or None
+        What shorted turns cost; zero where none are found [W].
+    unbalance_loss_W : float or None
+        What the unbalance of the supply costs [W].
+    voltage_loss_W : float or None
+        What it costs that the voltage is not the rated one; below zero where that saves [W].
+    rotor_loss_W : float or None
+        What a faulty cage costs; zero where none is found [W].
+    reasons : tuple of str
+        What limits the figures, in words.
+    """
+
+    efficiency: float | None
+    efficiency_ci95: tuple[float, float] | None
+    output_W: float | None
+    load_class: int | None
+    losses_W: float | None
+    losses_W_ci95: tuple[float, float] | None
+    stator_copper_W: float | None
+    rotor_copper_W: float | None
+    iron_W: float | None
+    friction_W: float | None
+    stray_W: float | None
+    turns_loss_W: float | None
+    unbalance_loss_W: float | None
+    voltage_loss_W: float | None
+    rotor_loss_W: float | None
+    reasons: list[str]
+
+
+class Losses(TypedDict):
+    """
+    What a motor loses, and what of it faults and supply cost a year.
+
+    records: the latest ones that tell it. losses_W: median of the latest. duty: running over known hours of
+    the last 30 days; null where none is metered, and the motor is then taken to run all the time.
+    currency: of `[energy]`, empty without one.
+    """
+
+    records: int
+    losses_W: float | None
+    duty: float | None
+    running_hours_per_year: float
+    currency: str
+    efficiencies: list[LoadEfficiency]
+    causes: list[CauseCost]
 
 
 MeasurementSource: TypeAlias = Literal["load-profile", "polled"]
@@ -778,7 +891,16 @@ ParametersSource: TypeAlias = Literal["given", "commissioned", "data-sheet", "ty
 
 
 Part: TypeAlias = Literal[
-    "stator", "rotor", "supply", "measurement", "starts", "thermal", "air-gap", "parameters", "load"
+    "stator",
+    "rotor",
+    "supply",
+    "measurement",
+    "starts",
+    "thermal",
+    "air-gap",
+    "parameters",
+    "load",
+    "efficiency",
 ]
 
 
@@ -849,11 +971,23 @@ PowerUnit: TypeAlias = Literal["W", "kW"]
 
 class PulsationFinding(TypedDict):
     """
-    The strongest swing of the load's torque; figures are null where a recording cannot tell them.
+    The strongest swing of the load's torque; figures are None where a record cannot tell them.
 
-    load_torque: its amplitude over the rated torque, with load_torque_deviation. noise: what noise makes of
-    it, rms. detection_limit: swing that nine of ten such recordings show. What swings once a turn is told by
-    the eccentricity, and at twice the slip by the rotor.
+    Parameters
+    ----------
+    load_torque : float or None
+        Its amplitude over rated torque.
+    noise : float or None
+        What noise makes of it, rms, over rated torque.
+    frequency_hz : float or None
+        Its frequency [Hz].
+    load_torque_deviation : float or None
+        Standard deviation of the amplitude: noise, and the parameters of the model; the inertia is taken as
+        the motor's file has it.
+    detection_limit : float or None
+        Swing that nine of ten such records show, over rated torque.
+    reasons : tuple of str
+        What limits the figures, in words.
     """
 
     load_torque: float | None
@@ -1052,9 +1186,17 @@ RotorState: TypeAlias = Literal["healthy", "watch", "fault", "unsupported"]
 
 class RotorTrendPoint(TypedDict):
     """
-    What one recording of a motor shows of its rotor.
+    What one recording of a motor shows of its rotor's cage. It never says how many bars are broken.
+
+    lower_sideband_dB, upper_sideband_dB: currents at (1 - 2s) f and (1 + 2s) f as measured, over the
+    fundamental. severity_dB: asymmetry of the rotor, without what load and inertia do to the sidebands
+    (..._ci95: 95 % interval). detection_limit_dB: severity that nine of ten such recordings show. load_bin:
+    tenth of 1.2 times the rated load, 0 to 11. duration_s: what was examined. load_oscillation_dB: torque of
+    the load that swings at 2 s f, over the rated one.
     """
 
+    time: str
+    recording_id: str
     state: RotorState
     lower_sideband_dB: float | None
     upper_sideband_dB: float | None
@@ -1067,8 +1209,6 @@ class RotorTrendPoint(TypedDict):
     duration_s: float
     load_oscillation_dB: float | None
     reasons: list[str]
-    time: str
-    recording_id: str
 
 
 class ShelvingRequest(TypedDict):
@@ -1120,6 +1260,31 @@ class Spectrum(TypedDict):
     b_dB: list[float]
     c_dB: list[float]
     lines: list[SpectralLine]
+
+
+class SpeedAlternative(TypedDict):
+    """
+    The speed if the rotor has so many bars.
+
+    Parameters
+    ----------
+    rotor_bars : int
+        Number of bars.
+    speed_rpm : float
+        Speed of the shaft [rpm].
+    speed_rpm_ci95 : tuple of float
+        Its 95 % interval, if the number is right [rpm].
+    """
+
+    rotor_bars: int
+    speed_rpm: float
+    speed_rpm_ci95: tuple[float, float]
+
+
+SpeedSource: TypeAlias = Literal["current", "model"]
+
+
+SpeedState: TypeAlias = Literal["seen", "alternatives", "not-seen"]
 
 
 StartCause: TypeAlias = Literal["supply", "load", "rotor", "warmth"]
@@ -1311,13 +1476,49 @@ class Status(TypedDict):
 
 class SupplyFigures(TypedDict):
     """
-    What a recording shows of the supply, and of what the motor draws from it.
+    Figures of the supply and of what the motor draws from it, over one recording.
 
-    voltage_unbalance_iec: negative over positive sequence. voltage_unbalance_nema: largest deviation of a
-    line voltage from their mean, over the mean. derating: share of the rated power that the unbalance leaves
-    (NEMA MG-1); null above 5 %, where NEMA gives none. voltage_deviation: mean over rated, minus 1.
-    harmonic_voltage_factor: HVF of NEMA MG-1. ..._harmonics: orders 1, 2, 3 ... over the fundamental, of the
-    line that is distorted most. What is of the currents is null, or empty, where none flows.
+    Harmonics are those of the line voltage, and of the line current, that is distorted most. They have as
+    many orders as the sampling tells, 25 at most. Figures of the currents are None, and their harmonics
+    empty, where no current flows.
+
+    Parameters
+    ----------
+    frequency_hz : float
+        Mean frequency of the supply [Hz].
+    line_voltages_V : tuple of float
+        Rms values of the fundamentals of v_ab, v_bc, v_ca [V].
+    voltage_unbalance_iec : float
+        |V2| / |V1| (IEC 61000-4-30, 5.7).
+    voltage_unbalance_nema : float
+        Largest deviation of a line voltage from their mean, over the mean (NEMA MG-1, 14.36).
+    derating : float or None
+        Factor of the rated power that the unbalance leaves (NEMA MG-1, 14.36); None above 5 %, where NEMA
+        gives none and advises against running the motor.
+    voltage_deviation : float
+        Mean line voltage over rated voltage, minus 1.
+    thd_voltage : float
+        Total harmonic distortion of the voltage, over the fundamental (IEC 61000-4-7).
+    harmonic_voltage_factor : float
+        HVF (NEMA MG-1, 30.1.2.1): odd orders from 5 on, without multiples of 3, squares over the order.
+    voltage_harmonics : tuple of float
+        Orders 1, 2, 3 ... of the voltage, over the fundamental.
+    line_currents_A : tuple of float or None
+        Rms values of the fundamentals of i_a, i_b, i_c [A].
+    current_unbalance : float or None
+        |I2| / |I1|.
+    thd_current : float or None
+        Total harmonic distortion of the current, over the fundamental.
+    current_harmonics : tuple of float
+        Orders 1, 2, 3 ... of the current, over the fundamental.
+    active_power_W : float or None
+        Mean of the instantaneous power [W].
+    power_factor : float or None
+        Active power over effective apparent power (IEEE Std 1459, 3.2.2.8).
+    duration_s : float
+        Length of what was measured [s].
+    reasons : tuple of str
+        What limits the figures, in words.
     """
 
     frequency_hz: float
@@ -1341,9 +1542,17 @@ class SupplyFigures(TypedDict):
 
 class SupplyTrendPoint(TypedDict):
     """
-    What one recording of a motor shows of its supply.
+    What one recording of a motor shows of its supply, and of what the motor draws from it.
+
+    voltage_unbalance_iec: negative over positive sequence. voltage_unbalance_nema: largest deviation of a
+    line voltage from their mean, over the mean. derating: share of the rated power that the unbalance leaves
+    (NEMA MG-1); null above 5 %, where NEMA gives none. voltage_deviation: mean over rated, minus 1.
+    harmonic_voltage_factor: HVF of NEMA MG-1. ..._harmonics: orders 1, 2, 3 ... over the fundamental, of the
+    line that is distorted most. What is of the currents is null, or empty, where none flows.
     """
 
+    time: str
+    recording_id: str
     frequency_hz: float
     line_voltages_V: tuple[float, float, float]
     voltage_unbalance_iec: float
@@ -1361,8 +1570,6 @@ class SupplyTrendPoint(TypedDict):
     power_factor: float | None
     duration_s: float
     reasons: list[str]
-    time: str
-    recording_id: str
 
 
 class SwingTrendPoint(TypedDict):
@@ -2251,13 +2458,34 @@ class RelayEventEntry(TypedDict):
 
 class RotorFinding(TypedDict):
     """
-    What a recording shows of the rotor's cage. It never says how many bars are broken.
+    What a record tells of the rotor's cage; figures are None where it cannot tell them.
 
-    lower_sideband_dB, upper_sideband_dB: currents at (1 - 2s) f and (1 + 2s) f as measured, over the
-    fundamental. severity_dB: asymmetry of the rotor, without what load and inertia do to the sidebands
-    (..._ci95: 95 % interval). detection_limit_dB: severity that nine of ten such recordings show. load_bin:
-    tenth of 1.2 times the rated load, 0 to 11. duration_s: what was examined. load_oscillation_dB: torque of
-    the load that swings at 2 s f, over the rated one.
+    Parameters
+    ----------
+    state : RotorState
+        Healthy, watch, fault, or unsupported.
+    lower_sideband_dB, upper_sideband_dB : float or None
+        Current at (1 - 2s) f and (1 + 2s) f as measured, over the fundamental [dB].
+    severity_dB : float or None
+        Asymmetry of the rotor's resistance, half the difference of its axes over its value [dB]. It is the
+        lower sideband over the rotor's current that a rotor of steady speed would have; load and inertia do
+        not change it. A cage that lost n of N neighbouring bars has a little less than n / N.
+    severity_dB_ci95 : tuple of float or None
+        Its 95 % interval: noise, and the parameters of the model.
+    detection_limit_dB : float or None
+        Severity that nine of ten such records show.
+    slip : float or None
+        Slip: that seen in the current, else from the fit of the model.
+    load_level : float or None
+        Load torque over rated torque.
+    load_bin : int or None
+        Tenth of 1.2 times the rated load, 0 to 11.
+    duration_s : float
+        Length of the steady running that was examined [s].
+    load_oscillation_dB : float or None
+        Torque of the load that swings at 2 s f, its amplitude over rated torque [dB].
+    reasons : tuple of str
+        Reasons of the state in words.
     """
 
     state: RotorState
@@ -2287,6 +2515,46 @@ class RotorOfStart(TypedDict):
     severity_dB: float | None
     agrees: bool | None
     words: str
+
+
+class SpeedFinding(TypedDict):
+    """
+    The speed of the shaft in one record.
+
+    Parameters
+    ----------
+    state : SpeedState
+        Whether the current shows it.
+    source : SpeedSource or None
+        Where the speed comes from; None where there is none.
+    speed_rpm : float or None
+        The speed: that seen in the current, otherwise that of the model [rpm].
+    speed_rpm_ci95 : tuple of float or None
+        Its 95 % interval; None of the model's [rpm].
+    slip : float or None
+        The slip at this speed.
+    model_speed_rpm : float or None
+        Speed by the model, to compare [rpm].
+    rotor_bars : int or None
+        Number of bars with which the speed is seen.
+    margin : float or None
+        By how much the speed beats every separate one, the least of all pieces in which it is seen [nats].
+    alternatives : tuple of SpeedAlternative
+        Speeds by number of bars, the likeliest first, where the records do not tell them apart.
+    reasons : tuple of str
+        Reasons of the state in words.
+    """
+
+    state: SpeedState
+    source: SpeedSource | None
+    speed_rpm: float | None
+    speed_rpm_ci95: tuple[float, float] | None
+    slip: float | None
+    model_speed_rpm: float | None
+    rotor_bars: int | None
+    margin: float | None
+    alternatives: list[SpeedAlternative]
+    reasons: list[str]
 
 
 class StartDetails(TypedDict):
@@ -2518,7 +2786,8 @@ class Diagnosis(TypedDict):
     phase_probabilities: that shorted turns, if there are any, lie in the winding on terminal a, b, c; null of
     a motor with slip rings. hypotheses: the causes that the phasors were weighed for, the likeliest first.
     rotor, supply: what it shows of them. classification: which causes are likely, by all that was examined.
-    eccentricity, pulsation: what it shows of the air gap, and of a load that swings.
+    eccentricity, pulsation: what it shows of the air gap, and of a load that swings. speed: of the shaft, as
+    seen in the current or by the model. losses: with the efficiency, and what faults add to them.
     """
 
     verdict: Verdict
@@ -2551,6 +2820,8 @@ class Diagnosis(TypedDict):
     classification: NotRequired[Classification | None]
     eccentricity: NotRequired[EccentricityFinding | None]
     pulsation: NotRequired[PulsationFinding | None]
+    speed: NotRequired[SpeedFinding | None]
+    losses: NotRequired[LossFigures | None]
 
 
 class DiagnosisRun(TypedDict):

@@ -117,6 +117,13 @@ class Operations:
             "thd_current",
             "active_power_W",
             "power_factor",
+            "efficiency",
+            "losses_W",
+            "output_W",
+            "turns_loss_W",
+            "unbalance_loss_W",
+            "voltage_loss_W",
+            "rotor_loss_W",
             "stator_resistance_change",
             "rotor_resistance_change",
             "magnetising_inductance_change",
@@ -188,6 +195,13 @@ class Operations:
             "thd_current",
             "active_power_W",
             "power_factor",
+            "efficiency",
+            "losses_W",
+            "output_W",
+            "turns_loss_W",
+            "unbalance_loss_W",
+            "voltage_loss_W",
+            "rotor_loss_W",
             "stator_resistance_change",
             "rotor_resistance_change",
             "magnetising_inductance_change",
@@ -534,6 +548,17 @@ class Operations:
         answer: models.LoadProfile = self._document(
             Request("GET", f"/api/v1/motors/{segment(motor)}/load-profile", query={"days": days})
         )
+        return answer
+
+    def get_losses(self, motor: str) -> models.Losses:
+        """Return what a motor loses: efficiency by load, and what faults and supply cost a year.
+
+        Parameters
+        ----------
+        motor
+            Name of the motor.
+        """
+        answer: models.Losses = self._document(Request("GET", f"/api/v1/motors/{segment(motor)}/losses"))
         return answer
 
     def list_integrations(self) -> Iterator[models.Integration]:

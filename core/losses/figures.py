@@ -1,7 +1,7 @@
 """What a record tells of a motor's losses."""
 
-from dataclasses import dataclass, field, fields
-from typing import Self
+from dataclasses import dataclass, fields
+from typing import Any, Self
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,33 +38,38 @@ class LossFigures:
         What limits the figures, in words.
     """
 
-    efficiency: float | None = None
-    efficiency_ci95: tuple[float, float] | None = None
-    output_W: float | None = None
-    load_class: int | None = None
-    losses_W: float | None = None
-    losses_W_ci95: tuple[float, float] | None = None
-    stator_copper_W: float | None = None
-    rotor_copper_W: float | None = None
-    iron_W: float | None = None
-    friction_W: float | None = None
-    stray_W: float | None = None
-    turns_loss_W: float | None = None
-    unbalance_loss_W: float | None = None
-    voltage_loss_W: float | None = None
-    rotor_loss_W: float | None = None
-    reasons: tuple[str, ...] = field(default=(), kw_only=True)
+    efficiency: float | None
+    efficiency_ci95: tuple[float, float] | None
+    output_W: float | None
+    load_class: int | None
+    losses_W: float | None
+    losses_W_ci95: tuple[float, float] | None
+    stator_copper_W: float | None
+    rotor_copper_W: float | None
+    iron_W: float | None
+    friction_W: float | None
+    stray_W: float | None
+    turns_loss_W: float | None
+    unbalance_loss_W: float | None
+    voltage_loss_W: float | None
+    rotor_loss_W: float | None
+    reasons: tuple[str, ...]
 
     @property
-    def extra_W(self) -> dict[str, float]:
-        """What faults and supply add to the losses, by cause in words, where they add any."""
+    def by_cause_W(self) -> dict[str, float]:
+        """What faults and supply add to the losses, by cause in words; none where the losses are not told."""
         found = {
             "shorted turns": self.turns_loss_W,
             "unbalance of the supply": self.unbalance_loss_W,
             "voltage off its rated value": self.voltage_loss_W,
             "faulty cage": self.rotor_loss_W,
         }
-        return {words: watts for words, watts in found.items() if watts is not None and watts > 0.0}
+        return {words: watts for words, watts in found.items() if watts is not None}
+
+    @property
+    def extra_W(self) -> dict[str, float]:
+        """Those of them that do add losses."""
+        return {words: watts for words, watts in self.by_cause_W.items() if watts > 0.0}
 
     @classmethod
     def untold(cls, reason: str) -> Self:
@@ -80,7 +85,8 @@ class LossFigures:
         LossFigures
             Without figures.
         """
-        return cls(reasons=(reason,))
+        untold: dict[str, Any] = {one.name: None for one in fields(cls)}
+        return cls(**untold | {"reasons": (reason,)})
 
     def as_dict(self) -> dict[str, object]:
         """Return the part `losses` of the document that `mcc diagnose --json` prints.

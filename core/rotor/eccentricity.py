@@ -106,6 +106,7 @@ class _Record:
             load_torque=abs(torque),
             load_torque_deviation=hypot(sqrt(torque_noise / 2.0), torque_wrong),
             rotation_frequency_hz=float(self._distance(self.kappa)[0]) / (2.0 * pi),
+            reasons=(),
         )
 
     def _distance(self, kappa: Array) -> Array:

@@ -77,6 +77,7 @@ def examine_pulsation(baseband: Baseband, motor: Motor, *, even_rotor: bool) -> 
         found_hz,
         load_torque_deviation=hypot(by_noise, wrong),
         detection_limit=NOISE_RMS * noise + NINE_IN_TEN * by_noise,
+        reasons=(),
     )
 
 

@@ -1,7 +1,7 @@
 """What a record tells of the air gap, and of a load that swings; what finds it is beside this module."""
 
 from dataclasses import dataclass, field, fields
-from typing import Self
+from typing import Any, Self
 
 EVEN_GAP = 0.004
 """Ripple of the permeance of a sound motor, a tenth of static times a twentieth of dynamic eccentricity."""
@@ -21,7 +21,7 @@ class SwingFinding:
         What limits the figures, in words.
     """
 
-    reasons: tuple[str, ...] = field(default=(), kw_only=True)
+    reasons: tuple[str, ...] = field(kw_only=True)
 
     @classmethod
     def untold(cls, reason: str) -> Self:
@@ -37,7 +37,8 @@ class SwingFinding:
         SwingFinding
             The finding, without figures.
         """
-        return cls(reasons=(reason,))
+        untold: dict[str, Any] = {one.name: None for one in fields(cls)}
+        return cls(**untold | {"reasons": (reason,)})
 
     def as_dict(self) -> dict[str, object]:
         """Return the part of the document that `mcc diagnose --json` prints.
@@ -76,14 +77,14 @@ class EccentricityFinding(SwingFinding):
         What limits the figures, in words.
     """
 
-    permeance_ripple: float | None = None
-    standard_deviation: float | None = None
-    detection_limit: float | None = None
-    lower_sideband_dB: float | None = None
-    upper_sideband_dB: float | None = None
-    load_torque: float | None = None
-    load_torque_deviation: float | None = None
-    rotation_frequency_hz: float | None = None
+    permeance_ripple: float | None
+    standard_deviation: float | None
+    detection_limit: float | None
+    lower_sideband_dB: float | None
+    upper_sideband_dB: float | None
+    load_torque: float | None
+    load_torque_deviation: float | None
+    rotation_frequency_hz: float | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,8 +108,8 @@ class PulsationFinding(SwingFinding):
         What limits the figures, in words.
     """
 
-    load_torque: float | None = None
-    noise: float | None = None
-    frequency_hz: float | None = None
-    load_torque_deviation: float | None = None
-    detection_limit: float | None = None
+    load_torque: float | None
+    noise: float | None
+    frequency_hz: float | None
+    load_torque_deviation: float | None
+    detection_limit: float | None

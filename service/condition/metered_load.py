@@ -110,6 +110,15 @@ def motor_load(
     )
 
 
+def metered_duty(repository: Repository, motor: Motor, *, days: int, now_ns: int) -> float | None:
+    """Return the share of the known hours of the last days that a motor ran; None where none is known."""
+    step, from_ns = AveragingStep.QUARTER_HOUR, now_ns - days * NANOSECONDS_PER_DAY
+    metered = repository.metered(motor.name, step, from_ns=from_ns, to_ns=now_ns)
+    points = [load_point(one, motor) for one in metered]
+    longest_ns = step.value * NANOSECONDS_PER_SECOND
+    return load_profile(points, from_ns=from_ns, to_ns=now_ns, longest_ns=longest_ns).duty
+
+
 def _load(known: Known, _motor: Motor) -> float | None:
     return known[1].load_level
 

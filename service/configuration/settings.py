@@ -21,6 +21,7 @@ from service.configuration.audit import AuditSettings
 from service.configuration.backup import BackupSettings
 from service.configuration.channels import CHANNEL_PATHS, MailChannel
 from service.configuration.dask import DaskTls
+from service.configuration.energy import EnergySettings
 from service.configuration.gateways.settings import GatewaysSettings
 from service.configuration.notifications import NotificationSettings
 from service.configuration.problems import ENVIRONMENT, ConfigurationError, Problem, Problems
@@ -109,6 +110,7 @@ class Settings(BaseSettings):
     backup: BackupSettings = Field(default_factory=BackupSettings)
     alarms: AlarmSettings = Field(default_factory=AlarmSettings)
     notifications: NotificationSettings = Field(default_factory=NotificationSettings)
+    energy: EnergySettings = Field(default_factory=EnergySettings)
     reports: ReportSettings = Field(default_factory=ReportSettings, validate_default=True)
     audit: AuditSettings = Field(default_factory=AuditSettings)
     gateways: GatewaysSettings = Field(default_factory=GatewaysSettings)

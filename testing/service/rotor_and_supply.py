@@ -64,10 +64,16 @@ ECCENTRIC_ROTOR = EccentricityFinding(
     load_torque=0.001,
     load_torque_deviation=0.002,
     rotation_frequency_hz=24.25,
+    reasons=(),
 )
 
 SWINGING_LOAD = PulsationFinding(
-    load_torque=0.0625, noise=0.001, frequency_hz=4.125, load_torque_deviation=0.0015, detection_limit=0.005
+    load_torque=0.0625,
+    noise=0.001,
+    frequency_hz=4.125,
+    load_torque_deviation=0.0015,
+    detection_limit=0.005,
+    reasons=(),
 )
 
 SUPPLY = SupplyFigures(

@@ -130,6 +130,14 @@ def load(
 
 
 @commands.command()
+def losses(motor: MotorName, url: Url = DEFAULT_URL, *, as_json: Json = False) -> None:
+    """Show what a motor loses: efficiency by load, and what faults and supply cost a year."""
+    from service.cli.losses import show_losses
+
+    show_losses(url, motor, as_json=as_json)
+
+
+@commands.command()
 def drift(
     motor: MotorName,
     url: Url = DEFAULT_URL,

@@ -25,6 +25,7 @@ from service.cli.output import WRONG_USE, CommandError, failing_clearly, print_d
 from service.cli.recordings.files import read_recording, with_advice
 from service.cli.recordings.given_columns import NOTHING_GIVEN, GivenColumns, with_given_columns
 from service.client.classification import answer_rows
+from service.client.losses import loss_words
 from service.client.rotor_and_supply import (
     gap_words,
     rotor_words,
@@ -180,3 +181,5 @@ def _add_what_is_beside(table: FittedTable, examined: Findings) -> None:
     if examined.supply is not None:
         for words in supply_words(examined.supply):
             table.add_row("supply", Text(words))
+        for words in loss_words(examined.losses):
+            table.add_row("losses", Text(words))

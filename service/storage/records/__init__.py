@@ -80,6 +80,7 @@ from service.storage.records.relays import (
     ReportPosition,
 )
 from service.storage.records.rotor_and_supply import (
+    LossEntry,
     RecordsBeyond,
     RotorEntry,
     SupplyEntry,
@@ -151,6 +152,7 @@ __all__ = [
     "LinkNote",
     "LinkTraffic",
     "LoginLimits",
+    "LossEntry",
     "Measurement",
     "MeteredHours",
     "MotorEntry",

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from enum import StrEnum
 
+from core.losses.figures import LossFigures
 from core.rotor.finding import RotorFinding
 from core.rotor.swing_findings import EccentricityFinding, PulsationFinding
 from core.supply.figures import SupplyFigures
@@ -26,6 +27,16 @@ class SupplyEntry:
     motor: str
     time_ns: int
     figures: SupplyFigures
+
+
+@dataclass(frozen=True, slots=True)
+class LossEntry:
+    """What a recording tells of its motor's losses."""
+
+    recording_id: str
+    motor: str
+    time_ns: int
+    figures: LossFigures
 
 
 @dataclass(frozen=True, slots=True)

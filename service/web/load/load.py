@@ -7,8 +7,10 @@ from markupsafe import Markup
 
 from core.load.profile import CLASS_WIDTH
 from core.machines.parameters import ThermalElement
+from service.condition.fault_costs import FaultCosts, fault_costs
 from service.condition.metered_load import MotorLoad, motor_load
 from service.condition.motor_data import motor_known
+from service.configuration.energy import EnergySettings
 from service.pictures.load_profile import LoadShare, load_profile_picture
 from service.pictures.looks import PAGE, Look
 from service.storage import Repository
@@ -24,6 +26,7 @@ class LoadPage:
 
     load: MotorLoad
     picture: Markup
+    costs: FaultCosts
 
 
 def load_page(
@@ -32,6 +35,7 @@ def load_page(
     *,
     days: int,
     now_ns: int,
+    energy: EnergySettings,
     thermal: ThermalElement | None = None,
     look: Look = PAGE,
 ) -> LoadPage | None:
@@ -43,4 +47,5 @@ def load_page(
     load = motor_load(repository, known, days=days, now_ns=now_ns, thermal=thermal)
     shares = [LoadShare(one.from_level + CLASS_WIDTH / 2.0, one.hours) for one in load.profile.classes]
     picture = load_profile_picture(motor, shares, of_what="of the running time", look=look)
-    return LoadPage(load, markup(picture))
+    costs = fault_costs(repository, motor, known, energy, now_ns=now_ns)
+    return LoadPage(load, markup(picture), costs)

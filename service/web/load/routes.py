@@ -24,5 +24,6 @@ def show_load(
     context = view.context
     here = context.motors.get(name)
     thermal = None if here is None else here.thermal
-    found = load_page(context.repository, name, days=days, now_ns=view.now_ns, thermal=thermal)
+    energy = context.settings.energy
+    found = load_page(context.repository, name, days=days, now_ns=view.now_ns, energy=energy, thermal=thermal)
     return view.page("load/page.html", title=f"{name}: load", motor=name, days=days, spans=SPANS, found=found)

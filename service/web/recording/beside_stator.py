@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from core.rotor.finding import RotorFinding, RotorState
 from core.supply.figures import SupplyFigures
 from service.api.recordings.diagnosis_schemas import Diagnosis
+from service.client.losses import loss_words
 from service.client.rotor_and_supply import (
     gap_words,
     rotor_words,
@@ -29,10 +30,11 @@ class RotorShown:
 
 @dataclass(frozen=True, slots=True)
 class SupplyShown:
-    """What the page says of the supply."""
+    """What the page says of the supply, and of the losses."""
 
     words: Sequence[str]
     figures: SupplyFigures
+    losses: Sequence[str] = ()
 
 
 def rotor_shown(diagnosis: Diagnosis | None) -> RotorShown | None:
@@ -50,4 +52,5 @@ def supply_shown(diagnosis: Diagnosis | None) -> SupplyShown | None:
     """Return what a diagnosis says of the supply; None where its record shows nothing of it."""
     if diagnosis is None or diagnosis.supply is None:
         return None
-    return SupplyShown(supply_words(diagnosis.supply), diagnosis.supply)
+    losses = () if diagnosis.losses is None else tuple(loss_words(diagnosis.losses))
+    return SupplyShown(supply_words(diagnosis.supply), diagnosis.supply, losses)

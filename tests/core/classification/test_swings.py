@@ -7,7 +7,14 @@ from core.rotor.finding import LOAD_OSCILLATION, RotorFinding, RotorState, decib
 from core.rotor.swing_findings import EccentricityFinding, PulsationFinding
 
 NO_GAP = EccentricityFinding.untold("a record too short")
-QUIET = PulsationFinding(load_torque=0.001, noise=0.0002, frequency_hz=6.0)
+QUIET = PulsationFinding(
+    load_torque=0.001,
+    noise=0.0002,
+    frequency_hz=6.0,
+    load_torque_deviation=0.0003,
+    detection_limit=0.001,
+    reasons=(),
+)
 OSCILLATES = f"{LOAD_OSCILLATION}: the load's torque swings at twice the slip"
 
 

@@ -14,6 +14,7 @@ from core.supply.figures import SupplyFigures
 from service.storage.models import DETAILS, MotorRow, RecordFiguresRow, details_of
 from service.storage.records import (
     Cursor,
+    LossEntry,
     Page,
     RecordsBeyond,
     SupplyEntry,
@@ -87,6 +88,14 @@ class RecordFigureRows(Sessions):
         """Return what a motor's latest recordings show of its air gap and its load, oldest first."""
         with self._read() as session:
             return latest_of(session, _swings(motor), _ORDER, _swing_entry, limit=limit)
+
+    def latest_losses(self, motor: str, *, limit: int) -> tuple[LossEntry, ...]:
+        """Return what a motor's latest recordings tell of its losses, oldest first. Raises NotFoundError."""
+        tells = (details_of(Subject.SUPPLY).is_not(None), details_of(Subject.LOSSES).is_not(None))
+        query = select(*_PLACE, *_LOSSES).where(RecordFiguresRow.motor == motor, *tells)
+        with self._read() as session:
+            found(session, MotorRow, motor, "motor")
+            return latest_of(session, query, _ORDER, _loss_entry, limit=limit)
 
     def latest_unbalances(self) -> tuple[UnbalanceEntry, ...]:
         """Return the unbalance of the latest recording of each motor in service that tells it."""
@@ -211,6 +220,10 @@ def _swings(motor: str) -> Select[*tuple[Any, ...]]:
 
 def _supply_entry(recording_id: str, motor: str, time_ns: int, *values: Any) -> SupplyEntry:
     return SupplyEntry(recording_id, motor, time_ns, _finding(SupplyFigures, Subject.SUPPLY, values))
+
+
+def _loss_entry(recording_id: str, motor: str, time_ns: int, *values: Any) -> LossEntry:
+    return LossEntry(recording_id, motor, time_ns, _finding(LossFigures, Subject.LOSSES, values))
 
 
 def _swing_entry(recording_id: str, motor: str, time_ns: int, *values: Any) -> SwingEntry:
