@@ -2,9 +2,10 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
-from core.classification.classification import Classification
 from core.diagnosis.verdict import Diagnosis
+from core.losses.figures import LossFigures
 from core.rotor.finding import RotorFinding, RotorState
 from core.rotor.swing_findings import EccentricityFinding, PulsationFinding
 from core.supply.figures import SupplyFigures
@@ -97,6 +98,26 @@ SUPPLY = SupplyFigures(
 )
 
 
+LOSSES = LossFigures(
+    efficiency=0.815,
+    efficiency_ci95=(0.775, 0.8475),
+    output_W=499.0,
+    load_class=6,
+    losses_W=113.5,
+    losses_W_ci95=(93.5, 137.75),
+    stator_copper_W=43.5,
+    rotor_copper_W=20.0,
+    iron_W=27.0,
+    friction_W=18.0,
+    stray_W=5.0,
+    turns_loss_W=12.5,
+    unbalance_loss_W=2.25,
+    voltage_loss_W=-0.5,
+    rotor_loss_W=0.0,
+    reasons=(),
+)
+
+
 class ExaminedRecordings:
     """Recordings of running motors with what they show, one a second."""
 
@@ -111,26 +132,18 @@ class ExaminedRecordings:
         motor: str = "PUMP-A1",
         diagnosis: Diagnosis | None = None,
         left_out: str | None = None,
-        classification: Classification | None = None,
         at_ns: int | None = None,
-        eccentricity: EccentricityFinding | None = None,
-        pulsation: PulsationFinding | None = None,
+        **parts: Any,
     ) -> str:
-        """Add a recording with what it shows; return its id. at_ns: of that time, not of the next second."""
+        """Add a recording with what it shows; return its id. at_ns: of that time, not of the next second.
+
+        parts: of its Findings, besides those named here.
+        """
         self._number += 1
         now_ns = NOW_NS + self._number * SECOND_NS if at_ns is None else at_ns
         stored = self._store.store({f"R{self._number}.CFF": f"{motor} {self._number}".encode()})
         added = self.repository.add_recording(stored, motor=motor, now_ns=now_ns)
-        self.diagnose(
-            rotor,
-            supply,
-            now_ns,
-            diagnosis=diagnosis,
-            left_out=left_out,
-            classification=classification,
-            eccentricity=eccentricity,
-            pulsation=pulsation,
-        )
+        self.diagnose(rotor, supply, now_ns, diagnosis=diagnosis, left_out=left_out, **parts)
         return added.recording.id
 
     def join(self, parts: Sequence[str], rotor: RotorFinding, *, motor: str = "PUMP-A1") -> str:
@@ -171,23 +184,14 @@ class ExaminedRecordings:
         *,
         diagnosis: Diagnosis | None = None,
         left_out: str | None = None,
-        classification: Classification | None = None,
-        eccentricity: EccentricityFinding | None = None,
-        pulsation: PulsationFinding | None = None,
+        **parts: Any,
     ) -> None:
         """Have the next recording that waits diagnosed."""
         claimed = self.repository.claim_job(now_ns=recorded_ns + 1000 * SECOND_NS, runner=RUNNER)
         assert claimed is not None
         assert self.repository.finish_job(
             claimed.job.id,
-            findings_of(
-                healthy() if diagnosis is None else diagnosis,
-                rotor=rotor,
-                supply=supply,
-                classification=classification,
-                eccentricity=eccentricity,
-                pulsation=pulsation,
-            ),
+            findings_of(healthy() if diagnosis is None else diagnosis, rotor=rotor, supply=supply, **parts),
             recorded_ns=recorded_ns,
             now_ns=recorded_ns,
             runner=RUNNER,

@@ -10,7 +10,7 @@ from service.retention.deletion import delete_recording
 from service.storage import Repository
 from service.storage.states import AlarmKind, AlarmState
 from testing.service.plants import NOW_NS
-from testing.service.rotor_and_supply import BROKEN_ROTOR, SOUND_ROTOR, SUPPLY, ExaminedRecordings
+from testing.service.rotor_and_supply import BROKEN_ROTOR, LOSSES, SOUND_ROTOR, SUPPLY, ExaminedRecordings
 
 MOTOR = "PUMP-A1"
 
@@ -49,3 +49,32 @@ def test_a_condition_follows_records_that_are_deleted(
         delete_recording(repository, store, one, "of another motor", now_ns=NOW_NS)
     found = repository.condition(MOTOR)
     assert (found.state, found.kind, found.as_of_ns) == (State.UNKNOWN, Kind.NONE, None)
+
+
+def test_what_costs_more_than_it_should_has_an_alarm_and_leaves_the_motor_healthy(
+    recorded: ExaminedRecordings,
+) -> None:
+    repository = recorded.repository
+    for _ in range(3):
+        recorded.add(SOUND_ROTOR, SUPPLY, losses=replace(LOSSES, unbalance_loss_W=30.0))
+    repository.settle_motor_condition(MOTOR, now_ns=NOW_NS)
+    (alarm,) = repository.open_alarms(motor=MOTOR, limit=10).items
+    assert (alarm.kind, alarm.standing) == (AlarmKind.INEFFICIENT, True)
+    assert "unbalance of the supply 30 W" in (alarm.reason or "")
+    found = repository.condition(MOTOR)
+    assert found.kind is Kind.NONE
+    assert found.document is not None
+    assert "losses" not in str(found.document["finding"])
+    for _ in range(3):
+        recorded.add(SOUND_ROTOR, SUPPLY, losses=replace(LOSSES, turns_loss_W=0.0))
+    repository.settle_motor_condition(MOTOR, now_ns=NOW_NS)
+    assert [one.standing for one in repository.open_alarms(motor=MOTOR, limit=10).items] == [False]
+
+
+def test_a_small_load_most_of_the_time_has_the_same_alarm(recorded: ExaminedRecordings) -> None:
+    for _ in range(12):
+        recorded.add(replace(SOUND_ROTOR, load_level=0.3, load_bin=3), SUPPLY)
+    recorded.repository.settle_motor_condition(MOTOR, now_ns=NOW_NS)
+    (alarm,) = recorded.repository.open_alarms(motor=MOTOR, limit=10).items
+    assert alarm.kind is AlarmKind.INEFFICIENT
+    assert "12 of the latest 12 records have less than 40% of the rated load" in (alarm.reason or "")

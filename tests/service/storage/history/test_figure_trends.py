@@ -8,10 +8,11 @@ from core.quantities import BY_NAME, TRENDED, Subject, of_subject
 from service.recording_store.store import RecordingStore
 from service.storage import NotFoundError, Repository
 from service.storage.records.history import TrendPoint
-from testing.service.plants import NOW_NS, SECOND_NS, fault
+from testing.service.plants import NOW_NS, SECOND_NS, fault, undiagnosable
 from testing.service.rotor_and_supply import (
     BROKEN_ROTOR,
     ECCENTRIC_ROTOR,
+    LOSSES,
     SUPPLY,
     SWINGING_LOAD,
     ExaminedRecordings,
@@ -23,6 +24,7 @@ FOUND: dict[Subject, Any] = {
     Subject.AIR_GAP: ECCENTRIC_ROTOR,
     Subject.LOAD: SWINGING_LOAD,
     Subject.SUPPLY: SUPPLY,
+    Subject.LOSSES: LOSSES,
 }
 OF_RECORDS = [name for name in TRENDED if BY_NAME[name].subject in FOUND]
 
@@ -35,6 +37,7 @@ def recorded(repository: Repository, store: RecordingStore) -> ExaminedRecording
         SUPPLY,
         eccentricity=ECCENTRIC_ROTOR,
         pulsation=SWINGING_LOAD,
+        losses=LOSSES,
         diagnosis=fault(0.05),
     )
     return examined
@@ -56,6 +59,7 @@ def test_each_value_is_the_one_that_was_found(recorded: ExaminedRecordings) -> N
 
 def test_intervals_come_from_their_ends_or_from_the_deviation(recorded: ExaminedRecordings) -> None:
     assert only(recorded, "rotor_severity_dB").ci95 == BROKEN_ROTOR.severity_dB_ci95
+    assert only(recorded, "efficiency").ci95 == LOSSES.efficiency_ci95
     assert only(recorded, "rotor_severity_dB").detection_limit == BROKEN_ROTOR.detection_limit_dB
     assert only(recorded, "rotor_severity_dB").state == "fault"
     assert only(recorded, "gap_permeance_ripple").ci95 == pytest.approx((0.0525 - 0.00392, 0.0525 + 0.00392))
@@ -79,8 +83,11 @@ def test_all_figures_of_a_subject_come_in_the_order_of_the_catalogue(recorded: E
 def test_a_record_that_tells_nothing_of_a_subject_is_not_in_its_trend(recorded: ExaminedRecordings) -> None:
     recorded.add(BROKEN_ROTOR)
     assert len(recorded.repository.trend(MOTOR, "slip", limit=9).items) == 2
-    for name in ("thd_voltage", "swing_load_torque", "gap_permeance_ripple"):
+    for name in ("thd_voltage", "efficiency"):
         assert len(recorded.repository.trend(MOTOR, name, limit=9).items) == 1
+    recorded.add(BROKEN_ROTOR, diagnosis=undiagnosable())
+    for name in ("slip", "swing_load_torque", "gap_permeance_ripple"):
+        assert len(recorded.repository.trend(MOTOR, name, limit=9).items) == 2
 
 
 def test_there_is_no_such_motor(recorded: ExaminedRecordings) -> None:

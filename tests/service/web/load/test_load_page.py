@@ -10,7 +10,7 @@ from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from service.storage.records import Actor
 from testing.service.metered_days import meter_a_day
-from testing.service.rotor_and_supply import SUPPLY, ExaminedRecordings
+from testing.service.rotor_and_supply import LOSSES, SOUND_ROTOR, SUPPLY, ExaminedRecordings
 from tests.core.relay_reports.examples import MOT
 from tests.service.web.pages import addresses, page, words
 
@@ -64,3 +64,20 @@ def test_the_relay_s_statistics_stand_beside_the_service_s_counts(
 def test_a_motor_that_no_service_knows_yet_and_one_that_is_not_there(client: httpx.Client) -> None:
     assert "has not read the motors file" in words(page(client.get("/motors/FAN-A2/load")), "main")[0]
     assert client.get("/motors/NOPE/load").status_code == 404
+
+
+def test_losses_stand_with_what_they_cost(
+    client: httpx.Client, repository: Repository, store: RecordingStore
+) -> None:
+    meter_a_day(repository)
+    assert "No record tells the losses yet" in " ".join(words(page(client.get(HERE)), "#losses p"))
+    recorded = ExaminedRecordings(repository, store)
+    for _ in range(2):
+        recorded.add(SOUND_ROTOR, SUPPLY, losses=LOSSES)
+
+    document = page(client.get(HERE))
+
+    rows = words(document, "#losses tbody tr")
+    assert rows[0].startswith("shorted turns12.5 W")
+    assert rows[-1] == "60 to 70 %81.5 %77.5 to 84.8 %2"
+    assert "as metered in the last 30 days" in " ".join(words(document, "#losses dd"))
