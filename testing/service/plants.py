@@ -96,9 +96,3 @@ def undiagnosable() -> Diagnosis:
         model="split-winding",
         method="hcpa",
     )
-
-
-def stored_document(diagnosis: Diagnosis) -> dict[str, object]:
-    """What is stored of a diagnosis whose record shows nothing beside."""
-    beside = ("rotor", "supply", "classification", "eccentricity", "pulsation")
-    return {**diagnosis.as_dict(), **dict.fromkeys(beside)}

@@ -15,7 +15,7 @@ from service.storage import Repository
 from service.storage.records import RemoteRecord
 from testing.service.findings import findings_of
 from testing.service.job_runner import RUNNER
-from testing.service.plants import NOW_NS, SECOND_NS, fault, stored_document
+from testing.service.plants import NOW_NS, SECOND_NS, fault
 from testing.service.small_record import CFG, DAT, IA
 from tests.core.recordings.cev_files import REPORT
 from tests.core.recordings.comtrade_files import RECORD_1999
@@ -129,7 +129,7 @@ def test_details_with_files_and_diagnosis(
         claimed.job.id, findings_of(fault()), recorded_ns=NOW_NS, now_ns=NOW_NS + SECOND_NS, runner=RUNNER
     )
     document = client.get(f"/api/v1/recordings/{recording}").json()
-    assert document["diagnosis"] == stored_document(fault())
+    assert document["diagnosis"] == findings_of(fault()).as_dict()
     assert [(file["name"], file["size_bytes"]) for file in document["files"]] == [
         ("EVENT.CFG", len(CFG)),
         ("EVENT.DAT", len(DAT)),
@@ -164,7 +164,7 @@ def test_a_recording_can_be_diagnosed_again(
     )
     runs = client.get(url).json()["items"]
     assert len(runs) == 5
-    assert [run["result"] for run in runs if run["state"] == "done"] == [stored_document(fault())]
+    assert [run["result"] for run in runs if run["state"] == "done"] == [findings_of(fault()).as_dict()]
 
 
 @pytest.mark.parametrize(("field", "known"), [("method", METHODS), ("model", MODELS)])

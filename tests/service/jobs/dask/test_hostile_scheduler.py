@@ -97,12 +97,12 @@ def test_a_client_that_trusts_its_scheduler_runs_the_pickle(tmp_path: Path, atta
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("", "expected JSON"),
-        ("[]", "an object with one key"),
-        ('{"run": "this"}', "expected diagnosed, rejected or a failure, found run"),
-        ('{"rejected": {"reason": 7}}', "rejected.reason: expected a str, found 7"),
-        ('{"rejected": {"reason": "no", "more": 1}}', "rejected: expected the fields reason"),
-        ('{"diagnosed": {}}', "diagnosed: expected the fields diagnosis"),
+        ("", "answer: Invalid JSON"),
+        ("[]", "answer: Input should be an object"),
+        ('{"run": "this"}', "run: Unexpected keyword argument"),
+        ('{"rejected": {"reason": 7}}', "rejected.reason: Input should be a valid string, found 7"),
+        ('{"rejected": {"reason": "no", "more": 1}}', "rejected.more: Unexpected keyword argument"),
+        ('{"diagnosed": {}}', "diagnosed.findings: Field required"),
         ('{"failed": "disk \\u001b[31m full"}', "disk"),
     ],
 )

@@ -12,7 +12,7 @@ from service.storage.states import JobState, RecordingRequestState, RecordingSta
 from service.timing.backoff import Backoff
 from testing.service.findings import findings_of
 from testing.service.job_runner import RUNNER
-from testing.service.plants import NOW_NS, SECOND_NS, fault, stored_document, undiagnosable
+from testing.service.plants import NOW_NS, SECOND_NS, fault, undiagnosable
 
 
 class Again(TypedDict):
@@ -80,7 +80,7 @@ def test_a_result_ends_job_recording_and_request(repository: Repository, recordi
     assert request_state(repository) == (RecordingRequestState.DIAGNOSED, None)
     diagnosis = repository.current_diagnosis(recording_id)
     assert diagnosis is not None
-    assert diagnosis.document == stored_document(fault())
+    assert diagnosis.document == findings_of(fault()).as_dict()
     assert diagnosis == repository.job(recording_id, job_id).diagnosis
     assert len(repository.trend("PUMP-A1", "mu_f", limit=10).items) == 1
 
