@@ -153,20 +153,28 @@ def _deviation(
     motor: Motor, measured: _Measured, speed: SpeedFinding, level_ci95: tuple[float, float] | None
 ) -> float:
     """Return the standard deviation of the logarithm of the losses, by what each uncertainty changes."""
-    tolerances, machine = motor.tolerances, motor.parameters
-    usual = other_losses(motor)
-    middle_W = measured.segregated(motor, usual).total_W
-    of_stator = hypot(tolerances.stator_resistance_ohm / sqrt(3.0), WARMTH_DEVIATION)
-    hotter = replace(machine, stator_resistance_ohm=machine.stator_resistance_ohm * exp(of_stator))
-    slipping = replace(measured, slip=measured.slip * exp(_slip_deviation(motor, measured.slip, speed)))
-    more_W = _level_deviation(level_ci95) * measured.turns_W if measured.turns_W else 0.0
+    middle_W = measured.segregated(motor, other_losses(motor)).total_W
+    warmer = _with_resistance(motor, "stator_resistance_ohm")
+    slower = _with_resistance(motor, "rotor_resistance_ohm")
+    is_seen = speed.seen_slip is not None
+    ratio = slower.parameters.rotor_resistance_ohm / motor.parameters.rotor_resistance_ohm
+    slipping = replace(measured, slip=measured.slip * (1.0 if is_seen else ratio))
+    seen = replace(measured, slip=measured.slip * exp(_seen_slip_deviation(measured.slip, speed)))
     changed_W = (
-        measured.segregated(replace(motor, parameters=hotter), usual).total_W,
-        slipping.segregated(motor, usual).total_W,
+        measured.segregated(warmer, other_losses(warmer)).total_W,
+        slipping.segregated(slower, other_losses(slower)).total_W,
+        seen.segregated(motor, other_losses(motor)).total_W,
         measured.segregated(motor, other_losses(motor, 1.0)).total_W,
-        middle_W + more_W,
+        middle_W + _level_deviation(level_ci95) * measured.turns_W,
     )
     return hypot(*(log(one / middle_W) for one in changed_W))
+
+
+def _with_resistance(motor: Motor, name: str) -> Motor:
+    """Return the motor with a resistance that is larger by its standard deviation: tolerance and warmth."""
+    deviation = hypot(getattr(motor.tolerances, name) / sqrt(3.0), WARMTH_DEVIATION)
+    value = getattr(motor.parameters, name) * exp(deviation)
+    return replace(motor, parameters=replace(motor.parameters, **{name: value}))
 
 
 def _level_deviation(ci95: tuple[float, float] | None) -> float:
@@ -176,10 +184,10 @@ def _level_deviation(ci95: tuple[float, float] | None) -> float:
     return log(ci95[1] / ci95[0]) / (2.0 * NORMAL_95)
 
 
-def _slip_deviation(motor: Motor, slip: float, speed: SpeedFinding) -> float:
-    """Return the standard deviation of the slip's logarithm: as seen, or by the rotor's resistance."""
+def _seen_slip_deviation(slip: float, speed: SpeedFinding) -> float:
+    """Return the standard deviation of the logarithm of a slip that is seen; zero of one by the model."""
     if speed.seen_slip is None or speed.speed_rpm_ci95 is None or speed.speed_rpm is None:
-        return hypot(motor.tolerances.rotor_resistance_ohm / sqrt(3.0), WARMTH_DEVIATION)
+        return 0.0
     low_rpm, high_rpm = speed.speed_rpm_ci95
     synchronous_rpm = speed.speed_rpm / (1.0 - slip)
     return (high_rpm - low_rpm) / (2.0 * NORMAL_95 * slip * synchronous_rpm)
