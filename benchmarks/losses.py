@@ -14,6 +14,7 @@ from statistics import median
 import numpy as np
 
 from benchmarks.reporting import rate_text, table
+from core.diagnosis.verdict import Indicators
 from core.losses.measuring import measure_losses
 from core.machines.load_point import load_point
 from core.machines.parameters import MachineParameters, Motor, ParametersSource, ParameterTolerances
@@ -201,8 +202,8 @@ Asked: how near is the [efficiency](../reference/losses.md) that a record tells 
 its interval hold it? `python -m benchmarks.losses` draws {MOTORS:,} motors (0.8 to 1,200 kW, 2 to 8 poles)
 whose losses are not those that the service takes for usual: core {CORE[0]:.0%} to {CORE[1]:.0%}, friction
 {FRICTION[0]:.0%} to {FRICTION[1]:.0%}, stray load losses {STRAY[0]:.0%} to {STRAY[1]:.0%} of all at rated
-load, as tests of cage motors give them; resistances up to {WARMTH[1] - 1.0:.0%} above the file's. Errors in points
-of efficiency, of records that tell it.
+load, as tests of cage motors give them; resistances up to {WARMTH[1] - 1.0:.0%} above the file's. Errors in
+points of efficiency, of records that tell it.
 
 """
 CLOSING = """
