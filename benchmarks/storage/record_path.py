@@ -1,7 +1,7 @@
 """What a small record costs the database on its way: python -m benchmarks.storage.record_path [--records 60]
 
 A record of a relay goes through the calls that collector, service and workers make for it: noted, claimed,
-its diagnosis kept, the alarm of the rotor settled, its motor folded. Told for each: SQL statements, and CPU
+its diagnosis kept, its motor folded. Told for each: SQL statements, and CPU
 time of this process. What is diagnosed is made up; the folding of it is real.
 """
 
@@ -121,8 +121,6 @@ class _Path:
                 now_ns=now_ns,
                 runner=RUNNER,
             )
-        with costs.of("service: settle the rotor's alarm"):
-            repository.settle_rotor_alarm(motor, now_ns=now_ns)
         with costs.of("service: what is to be folded"):
             repository.earliest_marks()
         with costs.of("worker: begin the fold"):

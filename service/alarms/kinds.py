@@ -1,11 +1,6 @@
 """The kinds of alarms and their priorities. The words are part of the REST contract."""
 
-from collections.abc import Mapping
 from enum import StrEnum
-from types import MappingProxyType
-from typing import Final
-
-from core.rotor.finding import RotorState
 
 
 class AlarmPriority(StrEnum):
@@ -52,11 +47,6 @@ class AlarmKind(StrEnum):
     FORGED_TOKENS = "forged-tokens"
     OWNER_LOCKED = "owner-locked"
 
-
-ROTOR_KINDS: Final[Mapping[RotorState, AlarmKind]] = MappingProxyType(
-    {RotorState.WATCH: AlarmKind.ROTOR_WATCH, RotorState.FAULT: AlarmKind.ROTOR_FAULT}
-)
-"""States of a rotor that somebody has to look after, and their alarms."""
 
 FOLLOW_FROM_QUARANTINE = frozenset(
     {

@@ -1,4 +1,4 @@
-"""Which alarm a part of a motor makes in which state; stator, rotor and starts have rules of their own."""
+"""Which alarm a part of a motor makes in which state; stator and starts have rules of their own."""
 
 from collections.abc import Mapping
 from types import MappingProxyType
@@ -10,6 +10,8 @@ from service.alarms.kinds import AlarmKind
 
 PART_ALARMS: Final[Mapping[tuple[Part, State], AlarmKind]] = MappingProxyType(
     {
+        (Part.ROTOR, State.WATCH): AlarmKind.ROTOR_WATCH,
+        (Part.ROTOR, State.FAULT): AlarmKind.ROTOR_FAULT,
         (Part.SUPPLY, State.WATCH): AlarmKind.SUPPLY_WATCH,
         (Part.SUPPLY, State.FAULT): AlarmKind.SUPPLY_FAULT,
         (Part.AIR_GAP, State.WATCH): AlarmKind.UNEVEN_AIR_GAP,

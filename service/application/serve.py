@@ -176,7 +176,6 @@ def _prepared(settings: Settings, plant: Plant) -> Repository:
         documents = {motor.name: document_of(motor.motor) for motor in plant.motors}
         repository.note_motors(documents, now_ns=time.time_ns())
         repository.settle_alarms(now_ns=time.time_ns(), rules=settings.alarms.condition_rules)
-        repository.settle_rotor_alarms(now_ns=time.time_ns())
         repository.settle_start_alarms(now_ns=time.time_ns())
         repository.reset_links(now_ns=time.time_ns())
     return repository

@@ -37,7 +37,6 @@ def keep_diagnosed(
     if not kept:
         log.warning("a diagnosis came after the lease was lost", recording=job.recording_id)
         return
-    repository.settle_rotor_alarm(claimed.motor, now_ns=now_ns)
     if findings.start is not None or claimed.is_repetition:
         repository.settle_start_alarms_of(claimed.motor, now_ns=now_ns)
     if findings.observation is None or claimed.is_repetition:

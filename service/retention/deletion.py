@@ -29,7 +29,6 @@ def delete_recording(
 ) -> Deletion:
     """Delete a recording for a person who says why. Raises NotFoundError, RecordingInUseError."""
     deletion = repository.delete_recording(recording_id, reason, by=by, now_ns=now_ns)
-    repository.settle_rotor_alarm(deletion.motor, now_ns=now_ns)
     repository.settle_start_alarms_of(deletion.motor, now_ns=now_ns)
     repository.settle_motor_condition(deletion.motor, now_ns=now_ns)
     log.info("recording deleted", recording=recording_id, motor=deletion.motor, reason=reason)

@@ -216,7 +216,6 @@ def test_all_gateways_say_it(repository: Repository, case: Case) -> None:
 
 def test_what_needs_somebody_has_its_alarm(repository: Repository, case: Case) -> None:
     now_ns = NOW_NS + 60 * SECOND_NS
-    repository.settle_rotor_alarm(MOTOR, now_ns=now_ns)
     repository.settle_start_alarms_of(MOTOR, now_ns=now_ns)
     kinds = {str(one.kind) for one in repository.open_alarms(motor=MOTOR, limit=10).items if one.standing}
     of_cause = {

@@ -124,6 +124,6 @@ def test_who_finds_nothing_to_do_waits_for_no_writer(database_url: str, reposito
         other.execute("BEGIN IMMEDIATE")
         begun_s = time.monotonic()
         assert repository.claim_job(now_ns=NOW_NS, runner=RUNNER) is None
-        repository.settle_rotor_alarm("PUMP-A1", now_ns=NOW_NS)
+        repository.settle_motor_condition("PUMP-A1", now_ns=NOW_NS)
         assert repository.relays_with_requests() == ()
         assert time.monotonic() - begun_s < BUSY_TIMEOUT_S

@@ -7,7 +7,6 @@ from service.storage.repository.alarms.figures import AlarmFigureRows
 from service.storage.repository.alarms.groups import AlarmGroupRows
 from service.storage.repository.alarms.lists import AlarmLists
 from service.storage.repository.alarms.people import AlarmPeopleRows
-from service.storage.repository.alarms.rotor import RotorAlarmRows
 from service.storage.repository.alarms.sources import AlarmSourceRows
 from service.storage.repository.alarms.starts import StartAlarmRows
 from service.storage.repository.alarms.suppression import AlarmSuppressionRows
@@ -19,7 +18,6 @@ class AlarmRows(
     AlarmPeopleRows,
     AlarmSuppressionRows,
     ConditionAlarmRows,
-    RotorAlarmRows,
     StartAlarmRows,
     AlarmFigureRows,
     AlarmCallRows,

@@ -2,11 +2,12 @@
 
 from collections.abc import Iterable
 
+from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from core.motor_condition.parts import Part, PartCondition
 from service.alarms.part_rules import OVER, PART_ALARMS, PART_OF_ALARM
-from service.storage.models import AlarmRow, MotorRow
+from service.storage.models import AlarmRow, DiagnosisRow, MotorRow
 from service.storage.models.alarms import is_open
 from service.storage.records import AlarmPlace, AlarmSpec
 from service.storage.repository.alarms.causes import (
@@ -36,6 +37,7 @@ def settle_part_alarms(
             subject=part.part.words,
             one_of_kind=True,
             advice=part.advice,
+            recording_id=_latest_recording(session, motor.name),
         )
         place = locked_place(session, AlarmPlace(motor=motor.name))
         raised = raised_at(session, place, spec, now_ns=now_ns)
@@ -46,3 +48,12 @@ def settle_part_alarms(
     end_of_motor(
         session, motor.name, [row for row in rows if PART_OF_ALARM[row.kind] not in told], why, now_ns=now_ns
     )
+
+
+def _latest_recording(session: Session, motor: str) -> str | None:
+    """Return the latest recording of a motor that runs, with which its parts were judged."""
+    query = select(DiagnosisRow.recording_id).where(
+        DiagnosisRow.motor == motor, DiagnosisRow.current, DiagnosisRow.says_nothing.is_(False)
+    )
+    order = (DiagnosisRow.recorded_ns.desc(), DiagnosisRow.id.desc())
+    return session.scalar(query.order_by(*order).limit(1))

@@ -5,10 +5,12 @@ earliest, and takes those marks away when it is done: a mark that comes meanwhil
 same motor at the same time, the first to end is kept, for the other began from an older version.
 """
 
+from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields
+from functools import cache
 
-from sqlalchemy import bindparam, delete, func, insert, or_, select, update
+from sqlalchemy import Update, bindparam, delete, func, insert, or_, select, update
 from sqlalchemy.orm import Session
 
 from service.alarms.condition_rules import AT_ONCE, ConditionRules
@@ -27,6 +29,7 @@ from service.storage.records import (
     ConditionFigures,
     FoldInput,
     FoldResult,
+    TrackedPoint,
 )
 from service.storage.repository.alarms.conditions import settle_alarm
 from service.storage.repository.conditions.fold_input import fold_input
@@ -34,7 +37,6 @@ from service.storage.repository.conditions.fold_marks import EARLIEST_NS, mark, 
 from service.storage.repository.conditions.motor_conditions import settle_motor_condition
 from service.storage.repository.conditions.observations import take_in_again
 from service.storage.repository.conditions.standing_changes import TOLD, is_material
-from service.storage.repository.conditions.tracking import write_tracked_points
 from service.storage.repository.history.condition_days import keep_days
 from service.storage.repository.sessions import NONE_HELD, Sessions, found, record_of, values_of
 from service.storage.texts import storable
@@ -42,12 +44,11 @@ from service.storage.texts import storable
 _OBSERVATIONS = Base.metadata.tables["observations"]
 """The table, not the class: statements for many rows at once look at no object of the session."""
 
-_FIGURES = [field.name for field in fields(ConditionFigures)]
-_SAID = (
-    update(_OBSERVATIONS)
-    .where(_OBSERVATIONS.c.recording_id == bindparam("of_recording"))
-    .values({name: bindparam(name) for name in _FIGURES})
+_SAID = tuple(field.name for field in fields(ConditionFigures))
+_FOLLOWED = tuple(
+    field.name for field in fields(TrackedPoint) if field.name not in ("recording_id", "time_ns")
 )
+"""Columns that a fold writes from each record on."""
 
 IDS_A_STATEMENT = 500
 """Databases limit how many values a statement may hold."""
@@ -167,30 +168,20 @@ class FoldingRows(Sessions):
             row.problem = None
             if fold.checkpoint is None:
                 row.rules = result.rules
-            for some in _in_parts(fold.marks):
-                session.execute(
-                    delete(FoldMarkRow).where(FoldMarkRow.id.in_(some)), execution_options=NONE_HELD
-                )
-            if fold.next_ns is not None:
-                mark(session, fold.motor, fold.next_ns)
-            _write_points(session, result)
-            write_tracked_points(session, result.tracked)
-            after_ns = None if fold.checkpoint is None else done_ns
-            keep_days(session, fold.motor, after_ns=after_ns, before_ns=fold.next_ns)
-            _write_changes(session, fold, result.changes, done_ns)
-            _write_checkpoints(session, fold.motor, result)
+            with session.no_autoflush:  # none of this looks at the condition's row, which changes below
+                _replace_written(session, fold, result, done_ns)
             if result.condition is not None:
                 for name, value in values_of(result.condition).items():
                     if name not in ("motor", "version"):
                         setattr(row, name, value)
-                row.stator = result.condition.document
-                settle_alarm(session, motor, result.condition, now_ns=now_ns, rules=rules)
-                row.parameters = result.parameters
+                row.stator, row.parameters = result.condition.document, result.parameters
                 told = None if row.standing is None else row.standing.get(TOLD)
                 if is_material(told, result.standing):
                     told = result.standing
-                    _mark_latest_of_bus(session, fold.motor)
+                    with session.no_autoflush:  # the rows of others are read, and the row's own comes once
+                        _mark_latest_of_bus(session, fold.motor)
                 row.standing = None if result.standing is None else {**result.standing, TOLD: told}
+                settle_alarm(session, motor, result.condition, now_ns=now_ns, rules=rules)
                 settle_motor_condition(session, row, now_ns=now_ns)
             return True
 
@@ -212,6 +203,19 @@ class FoldingRows(Sessions):
             return tuple(record_of(Checkpoint, row) for row in session.scalars(query))
 
 
+def _replace_written(session: Session, fold: FoldInput, result: FoldResult, done_ns: int) -> None:
+    """Write what a fold found record by record, in place of what was there, and take its marks away."""
+    for some in _in_parts(fold.marks):
+        session.execute(delete(FoldMarkRow).where(FoldMarkRow.id.in_(some)), execution_options=NONE_HELD)
+    if fold.next_ns is not None:
+        mark(session, fold.motor, fold.next_ns)
+    _write_points(session, result)
+    after_ns = None if fold.checkpoint is None else done_ns
+    keep_days(session, fold.motor, after_ns=after_ns, before_ns=fold.next_ns)
+    _write_changes(session, fold, result.changes, done_ns)
+    _write_checkpoints(session, fold.motor, result)
+
+
 def _mark_latest_of_bus(session: Session, motor: str) -> None:
     """Have the others of the bus judged anew: what stands in all of them is the bus's, not theirs."""
     query = select(ConditionRow.motor, ConditionRow.as_of_ns).where(
@@ -223,16 +227,26 @@ def _mark_latest_of_bus(session: Session, motor: str) -> None:
 
 
 def _write_points(session: Session, result: FoldResult) -> None:
-    """Write what is said from each record on; one that was deleted meanwhile is left out."""
-    if not result.points:
-        return
-    session.connection().execute(
-        _SAID,
-        [
-            {"of_recording": point.recording_id, **{name: getattr(point, name) for name in _FIGURES}}
-            for point in result.points
-        ],
-    )
+    """Write what is said, and how parameters changed, from each record on; deleted ones are left out.
+
+    A record that has both takes one statement.
+    """
+    written: dict[str, dict[str, object]] = defaultdict(dict)
+    for names, points in ((_SAID, result.points), (_FOLLOWED, result.tracked)):
+        for point in points:
+            written[point.recording_id] |= {name: getattr(point, name) for name in names}
+    alike: dict[tuple[str, ...], list[dict[str, object]]] = defaultdict(list)
+    for recording_id, values in written.items():
+        alike[tuple(values)].append({"of_recording": recording_id, **values})
+    for names, rows in alike.items():
+        session.connection().execute(_written(names), rows)
+
+
+@cache
+def _written(names: tuple[str, ...]) -> Update:
+    """Return the statement that writes these columns of one record: to put it together takes long."""
+    of_one = _OBSERVATIONS.c.recording_id == bindparam("of_recording")
+    return update(_OBSERVATIONS).where(of_one).values({name: bindparam(name) for name in names})
 
 
 def _write_changes(

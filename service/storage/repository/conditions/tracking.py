@@ -1,10 +1,9 @@
 """Parameters followed while motors run: kept with their conditions, and listed."""
 
-from collections.abc import Sequence
 from dataclasses import fields
 from typing import Any, Final
 
-from sqlalchemy import Select, bindparam, exists, select, update
+from sqlalchemy import Select, exists, select
 from sqlalchemy.orm import Session
 
 from core.starts.examined import StartParameters
@@ -27,11 +26,6 @@ _OBSERVATIONS: Final = Base.metadata.tables["observations"]
 _NAMES: Final = [field.name for field in fields(TrackedPoint)]
 _FIGURES: Final = [name for name in _NAMES if name not in ("recording_id", "time_ns")]
 _ORDER: Final[Order] = (ObservationRow.time_ns, ObservationRow.recording_id)
-_FOLLOWED: Final = (
-    update(_OBSERVATIONS)
-    .where(_OBSERVATIONS.c.recording_id == bindparam("of_recording"))
-    .values({name: bindparam(name) for name in _FIGURES})
-)
 
 
 class TrackingRows(Sessions):
@@ -97,19 +91,6 @@ def follow_again(session: Session, motor: str, time_ns: int) -> None:
     later = exists().where(ObservationRow.motor == motor, ObservationRow.time_ns >= time_ns)
     if session.scalar(select(later)):
         mark(session, motor, time_ns)
-
-
-def write_tracked_points(session: Session, points: Sequence[TrackedPoint]) -> None:
-    """Write changes of parameters after each record; one that was deleted meanwhile is left out."""
-    if not points:
-        return
-    session.connection().execute(
-        _FOLLOWED,
-        [
-            {"of_recording": point.recording_id, **{name: getattr(point, name) for name in _FIGURES}}
-            for point in points
-        ],
-    )
 
 
 def _of_motor(motor: str) -> Select[*tuple[Any, ...]]:

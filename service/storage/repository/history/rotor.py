@@ -14,6 +14,7 @@ from service.storage.repository.history.rotor_course import (
     TOLD_STATES,
     Place,
     course_condition,
+    judge_added,
     judged_again,
 )
 from service.storage.repository.sessions import Order, Sessions, found, latest_of, page_of, within
@@ -92,6 +93,10 @@ def keep_rotor_finding(
     if not counted and (finding is None or finding.state not in TOLD_STATES):
         if finding is not None:  # nothing follows from one that cannot tell
             _put_in(session, recording_id, motor, time_ns, finding)
+        return
+    if not counted and finding is not None and not _parts(session, recording_id):
+        (place,) = _put_in(session, recording_id, motor, time_ns, finding)
+        judge_added(session, motor, place)
         return
     with judged_again(session, motor) as places:
         places += _taken_out(session, recording_id)

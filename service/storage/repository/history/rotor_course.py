@@ -70,7 +70,6 @@ def _place(name: str) -> ColumnElement[Any]:
 _LATEST: Final = (
     _course(*_KEY, *_FIGURES, RotorFindingRow.reasons).order_by(*_LATEST_FIRST).limit(LATEST_RECORDS)
 )
-_LATEST_CONDITION: Final = _course(RotorFindingRow.condition).order_by(*_LATEST_FIRST).limit(1)
 _OF_BINS: Final = _course(RotorFindingRow.load_bin, func.count()).group_by(RotorFindingRow.load_bin)
 _FIRST_OF_BINS: Final = union_all(
     *(
@@ -150,16 +149,21 @@ def course_condition(session: Session, motor: str, *, dates_healthy: bool = True
     return rotor_condition(judged, since_ns(session, motor, state) if is_dated else None, bins)
 
 
-def latest_condition(session: Session, motor: str) -> RotorState | None:
-    """Return the condition of a motor's rotor from its latest record on; None where none tells of it."""
-    found: RotorState | None = session.scalar(_LATEST_CONDITION, {"of_motor": motor})
-    return found
-
-
 def latest_time_ns(session: Session, motor: str) -> int | None:
     """Return the time of a motor's latest record that tells of its rotor; None without any."""
     latest = session.execute(_LATEST, {"of_motor": motor}).first()
     return None if latest is None else latest.time_ns
+
+
+def judge_added(session: Session, motor: str, place: Place) -> None:
+    """Judge again what follows from a finding that was added: nothing else has changed."""
+    session.flush()
+    after = _baselines(session, motor)
+    # A finding that is not of its load's first ones leaves every baseline as it was.
+    if any(place.recording_id in one.recording_ids and one.level_dB is not None for one in after.values()):
+        _judge_all(session, motor, after)
+    else:
+        _judge_from(session, motor, place, after)
 
 
 @contextmanager

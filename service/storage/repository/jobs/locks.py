@@ -4,7 +4,6 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from service.storage.models import JobRow, MotorRow, RecordingRow
-from service.storage.repository.sessions import found
 
 
 def lock_motor_of(session: Session, job_id: str) -> None:
@@ -12,7 +11,10 @@ def lock_motor_of(session: Session, job_id: str) -> None:
 
     The motor comes before the job, as for whoever deletes a recording: no two wait for each other.
     """
-    of_job = select(RecordingRow.motor).join(JobRow, JobRow.recording_id == RecordingRow.id)
-    motor = session.scalar(of_job.where(JobRow.id == job_id))
-    if motor is not None:
-        found(session, MotorRow, motor, "motor", lock=True)
+    of_job = (
+        select(MotorRow)
+        .join(RecordingRow, RecordingRow.motor == MotorRow.name)
+        .join(JobRow, JobRow.recording_id == RecordingRow.id)
+        .where(JobRow.id == job_id)
+    )
+    session.scalars(of_job.with_for_update(of=MotorRow, key_share=True)).first()
