@@ -76,6 +76,33 @@ class RecoveryCodeRow(Base):
     user: Mapped[str] = mapped_column(ForeignKey("users.name"), index=True)
 
 
+class PasskeyRow(Base):
+    """A passkey (WebAuthn) of a user. credential, public_key: base64url, as browsers write them.
+
+    signatures: how many the device has counted; 0 where it counts none. used_ns: when it last let them in.
+    """
+
+    __tablename__ = "passkeys"
+
+    id: Mapped[str] = mapped_column(String(36), primary_key=True)
+    user: Mapped[str] = mapped_column(ForeignKey("users.name"), index=True)
+    label: Mapped[str]
+    credential: Mapped[str] = mapped_column(String(1400), unique=True)
+    public_key: Mapped[str]
+    signatures: Mapped[int]
+    created_ns: Mapped[int]
+    used_ns: Mapped[int | None]
+
+
+class SpentChallengeRow(Base):
+    """A challenge that a passkey has answered, until it would be too old anyway. digest: SHA-256 of it."""
+
+    __tablename__ = "spent_challenges"
+
+    digest: Mapped[str] = mapped_column(String(64), primary_key=True)
+    expires_ns: Mapped[int] = mapped_column(index=True)
+
+
 class LoginLinkRow(Base):
     """A link that begins one session of a user, until it is followed. digest: SHA-256 of its secret."""
 
