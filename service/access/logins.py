@@ -112,12 +112,14 @@ def begin_session(
     way: str,
     *,
     second_factor: bool,
+    provider_session: str | None = None,
     ends: str | None,
     now_ns: int,
 ) -> str:
     """Return the secret of a new session. Raises NotFoundError (the user was deleted meanwhile).
 
-    second_factor: whether more was shown than a password.
+    second_factor: whether more was shown than a password. provider_session: what an identity provider calls
+    this login.
     ends: the secret of the session that the browser had, of whomever; it is of no more use to anybody.
     """
     secret = new_session()
@@ -128,6 +130,8 @@ def begin_session(
         by.name,
         way,
         second_factor=second_factor,
+        provider_session=provider_session,
+        most=settings.sessions,
         oldest_ns=oldest_session_ns(settings, now_ns),
         idle_since_ns=idle_since_ns(settings, now_ns),
         by=by,

@@ -43,8 +43,8 @@ from service.storage import Repository
 from service.storage.records import Actor, NewPasskey, Passkey
 
 CHALLENGE_S: Final = 300
-LONGEST_ANSWER: Final = 20_000
-"""Characters of what a browser sends of a passkey; some devices add certificates to a new one."""
+LONGEST_ANSWER: Final = 6000
+"""Characters of what a browser sends of a passkey. Without attestation it has some hundreds to 2500."""
 
 MOST_PASSKEYS: Final = 20
 """A user has at most so many."""
@@ -211,7 +211,7 @@ def _spend(repository: Repository, seal: Seal, challenge: bytes, purpose: str, *
         raise PasskeyRefusedError("the challenge was not made for this") from error
     if expires_ns <= now_ns:
         raise PasskeyRefusedError("the challenge is too old")
-    if not repository.spend_challenge(digest_of(challenge.decode()), expires_ns=expires_ns, now_ns=now_ns):
+    if not repository.use_once(digest_of(challenge.decode()), expires_ns=expires_ns, now_ns=now_ns):
         raise PasskeyRefusedError("the challenge was answered before")
 
 

@@ -107,7 +107,7 @@ def log_in(repository: Repository, *roles: Role, user: str | None = None) -> str
             repository.add_user(user, roles, password=None, by=TESTS, now_ns=now_ns)
     secret, by = new_session(), Actor(user, "127.0.0.1")
     repository.begin_session(
-        digest_of(secret), user, "tests", oldest_ns=0, idle_since_ns=0, by=by, now_ns=now_ns
+        digest_of(secret), user, "tests", most=100, oldest_ns=0, idle_since_ns=0, by=by, now_ns=now_ns
     )
     return secret
 

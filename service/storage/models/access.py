@@ -54,7 +54,8 @@ class UserRow(Base):
 class UserSessionRow(Base):
     """A login, until it is ended. digest: SHA-256 of the secret that the client has.
 
-    second_factor: whether more was shown than a password.
+    second_factor: whether more was shown than a password. provider_session: an identity provider, and what
+    it calls this login.
     """
 
     __tablename__ = "user_sessions"
@@ -65,6 +66,7 @@ class UserSessionRow(Base):
     created_ns: Mapped[int]
     used_ns: Mapped[int] = mapped_column(index=True)
     second_factor: Mapped[bool]
+    provider_session: Mapped[str | None] = mapped_column(String(600), index=True)
 
 
 class RecoveryCodeRow(Base):
@@ -94,10 +96,12 @@ class PasskeyRow(Base):
     used_ns: Mapped[int | None]
 
 
-class SpentChallengeRow(Base):
-    """A challenge that a passkey has answered, until it would be too old anyway. digest: SHA-256 of it."""
+class UsedOnceRow(Base):
+    """What counts once and was used, until it would be too old anyway: a challenge that a passkey answered,
+    a logout token. digest: SHA-256 of it.
+    """
 
-    __tablename__ = "spent_challenges"
+    __tablename__ = "used_once"
 
     digest: Mapped[str] = mapped_column(String(64), primary_key=True)
     expires_ns: Mapped[int] = mapped_column(index=True)

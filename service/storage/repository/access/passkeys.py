@@ -8,7 +8,7 @@ from sqlalchemy.exc import IntegrityError
 
 from service.audit.actions import AuditAction
 from service.storage.errors import LastFactorError, NotFoundError, PasskeyExistsError
-from service.storage.models import PasskeyRow, SpentChallengeRow, UserRow
+from service.storage.models import PasskeyRow, UsedOnceRow, UserRow
 from service.storage.records import Actor, NewPasskey, Passkey
 from service.storage.repository.access.ending import forget_second_factor
 from service.storage.repository.access.second_factors import end_other_sessions, replace_codes
@@ -121,12 +121,12 @@ class PasskeyRows(Sessions):
                 session, by, AuditAction.SECOND_FACTOR_REMOVED, (KIND, user), now_ns=now_ns, before=before
             )
 
-    def spend_challenge(self, digest: str, *, expires_ns: int, now_ns: int) -> bool:
-        """Use up a challenge; False where it was used up before."""
+    def use_once(self, digest: str, *, expires_ns: int, now_ns: int) -> bool:
+        """Use up what counts once, of this digest; False where it was used before."""
         try:
             with self._write() as session:
-                session.execute(delete(SpentChallengeRow).where(SpentChallengeRow.expires_ns <= now_ns))
-                session.execute(insert(SpentChallengeRow).values(digest=digest, expires_ns=expires_ns))
+                session.execute(delete(UsedOnceRow).where(UsedOnceRow.expires_ns <= now_ns))
+                session.execute(insert(UsedOnceRow).values(digest=digest, expires_ns=expires_ns))
         except IntegrityError:
             return False
         return True
