@@ -27,7 +27,7 @@ def main(command: str) -> int:
             FILE.write_text(json.dumps(document, indent=1) + "\n", encoding="utf-8")
             print(f"{FILE.name}: advisories about {len(pins)} packages")
             return 0
-        found = affected(pins, read(FILE, datetime.now(UTC)), _accepted())
+        found = affected(pins, read(FILE, datetime.now(UTC)), accepted())
     except AdvisoryError as error:
         print(f"audit: {error}", file=sys.stderr)
         return 1
@@ -37,7 +37,7 @@ def main(command: str) -> int:
     return 1 if found else 0
 
 
-def _accepted() -> dict[str, str]:
+def accepted() -> dict[str, str]:
     """Why advisories do not concern us, by their ids."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     accepted: dict[str, str] = project["tool"]["statorwatch"]["accepted-advisories"]

@@ -650,11 +650,14 @@ class LoadImport(TypedDict):
 class LoginRequest(TypedDict):
     """
     Who logs in. code: of their authenticator app, or a recovery code, where they have a second factor.
+
+    passkey: in place of the code, what a browser's `PublicKeyCredential.toJSON()` gives, as text.
     """
 
     name: str
     password: str
     code: NotRequired[str | None]
+    passkey: NotRequired[str | None]
 
 
 class LoginWays(TypedDict):
@@ -740,6 +743,18 @@ class Losses(TypedDict):
 
 
 MeasurementSource: TypeAlias = Literal["load-profile", "polled"]
+
+
+class NewPasskey(TypedDict):
+    """
+    A passkey that was added. recovery_codes: for who had no second factor, shown this once.
+    """
+
+    id: str
+    label: str
+    created_time: str
+    used_time: str | None
+    recovery_codes: list[str]
 
 
 class NewPassword(TypedDict):
@@ -902,6 +917,44 @@ Part: TypeAlias = Literal[
     "load",
     "efficiency",
 ]
+
+
+class Passkey(TypedDict):
+    """
+    A passkey of a user. used_time: when it last let them in.
+    """
+
+    id: str
+    label: str
+    created_time: str
+    used_time: str | None
+
+
+class PasskeyAnswer(TypedDict):
+    """
+    What a device has made: `PublicKeyCredential.toJSON()`, as text. label: what its owner calls it.
+    """
+
+    label: str
+    answer: str
+
+
+class PasskeyOptions(TypedDict):
+    """
+    What browsers ask a device with: PublicKeyCredentialCreationOptionsJSON, or ...RequestOptionsJSON.
+
+    `PublicKeyCredential.parseCreationOptionsFromJSON` and `parseRequestOptionsFromJSON` read them.
+    """
+
+    options: dict[str, Any]
+
+
+class Passkeys(TypedDict):
+    """
+    All passkeys of a user.
+    """
+
+    items: list[Passkey]
 
 
 class PasswordChange(TypedDict):

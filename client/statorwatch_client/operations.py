@@ -1930,6 +1930,62 @@ class Operations:
         )
         return answer
 
+    def ask_for_passkey(self, *, name: str) -> models.PasskeyOptions:
+        """Return what a browser asks a device with to log in; it does not tell whether there is such a user.
+
+        Parameters
+        ----------
+        name
+            `name` of the request.
+        """
+        answer: models.PasskeyOptions = self._document(
+            Request("GET", "/api/v1/login/passkey", query={"name": name})
+        )
+        return answer
+
+    def list_passkeys(self) -> models.Passkeys:
+        """Return the own passkeys, the oldest first."""
+        answer: models.Passkeys = self._document(Request("GET", "/api/v1/account/passkeys"))
+        return answer
+
+    def add_passkey(self, document: models.PasskeyAnswer) -> models.NewPasskey:
+        """Keep what a device has made; other own sessions end.
+
+        Who had no second factor gets recovery codes, which are shown this once.
+
+        Parameters
+        ----------
+        document
+            What is sent.
+        """
+        answer: models.NewPasskey = self._document(Request("POST", "/api/v1/account/passkeys", json=document))
+        return answer
+
+    def propose_passkey(self, document: models.OwnPassword) -> models.PasskeyOptions:
+        """Return what a browser asks a device for a new passkey with.
+
+        Parameters
+        ----------
+        document
+            What is sent.
+        """
+        answer: models.PasskeyOptions = self._document(
+            Request("POST", "/api/v1/account/passkeys/options", json=document)
+        )
+        return answer
+
+    def remove_passkey(self, passkey_id: str, document: models.OwnPassword) -> None:
+        """Remove an own passkey; other own sessions end. 409 for the last factor where a role needs one.
+
+        Parameters
+        ----------
+        passkey_id
+            As a document tells it.
+        document
+            What is sent.
+        """
+        self._done(Request("POST", f"/api/v1/account/passkeys/{segment(passkey_id)}/removal", json=document))
+
     def list_own_tokens(self, *, limit: int | None = None) -> Iterator[models.Token]:
         """Return the own tokens, without their secrets.
 

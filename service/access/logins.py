@@ -3,28 +3,31 @@
 The first and the last are short. The second takes memory: whoever calls it bounds how many do at once.
 """
 
-from collections.abc import Callable
+from typing import Protocol
 
 from core.units import NANOSECONDS_PER_SECOND
 from service.access.bearer_secrets import digest_of, new_session
 from service.access.identities import idle_since_ns, oldest_session_ns
 from service.access.passwords import hashed, is_correct, needs_renewal
-from service.access.second_factors import is_asked_of, is_passed
+from service.access.second_factors import is_asked_of
 from service.configuration.access import AccessSettings
-from service.process.sealing import Seal
 from service.storage import Repository
 from service.storage.records import Actor, LoginLimits
 
 LONGEST_NAME = 100
 
 
+class SecondLook(Protocol):
+    """Looks at what an account shows besides the password; returns why it is refused, or None."""
+
+    def __call__(self, by: Actor, *, now_ns: int) -> str | None: ...
+
+
 class LoginRefusedError(Exception):
-    """The name, the password or the code is wrong; which one is not told."""
+    """The name, the password or the second factor is wrong; which one is not told."""
 
     def __init__(self) -> None:
-        super().__init__(
-            "the name or the password is wrong, or the code of the second factor is wrong, used or missing"
-        )
+        super().__init__("the name or the password is wrong, or the second factor is wrong, used or missing")
 
 
 class LoginLockedError(Exception):
@@ -60,18 +63,17 @@ def check_password(repository: Repository, account: str, password: str, address:
 def check_login(
     repository: Repository,
     settings: AccessSettings,
-    seal: Callable[[], Seal],
     account: str,
     password: str,
-    code: str | None,
+    second: SecondLook | None,
     address: str,
     *,
     now_ns: int,
 ) -> bool:
     """Look at what somebody shows to log in; return whether that was a second factor too.
 
-    seal: opens the secrets of authenticator apps. It takes as long, and the memory, as a password.
-    Raises LoginRefusedError, SealError.
+    second: looks at what was shown besides the password, where that is asked for; None: nothing was. It takes
+    as long, and the memory, as a password. Raises LoginRefusedError, and what `second` does.
     """
     kept = _right(repository, account, password, address, now_ns=now_ns)
     user = repository.user(account)
@@ -79,9 +81,9 @@ def check_login(
         _succeed(repository, account, password, address, kept)
         return False
     by = Actor(account, address, user.roles)
-    if code is None or not is_passed(repository, seal(), account, code, by=by, now_ns=now_ns):
-        reason = "right password, no code" if code is None else "right password, wrong or used code"
-        repository.note_login_failed(account, address, reason, now_ns=now_ns)
+    refused = "no second factor" if second is None else second(by, now_ns=now_ns)
+    if refused is not None:
+        repository.note_login_failed(account, address, f"right password, {refused}", now_ns=now_ns)
         raise LoginRefusedError
     _succeed(repository, account, password, address, kept)
     return True
@@ -110,12 +112,14 @@ def begin_session(
     way: str,
     *,
     second_factor: bool,
+    provider_session: str | None = None,
     ends: str | None,
     now_ns: int,
 ) -> str:
     """Return the secret of a new session. Raises NotFoundError (the user was deleted meanwhile).
 
-    second_factor: whether more was shown than a password.
+    second_factor: whether more was shown than a password. provider_session: what an identity provider calls
+    this login.
     ends: the secret of the session that the browser had, of whomever; it is of no more use to anybody.
     """
     secret = new_session()
@@ -126,6 +130,8 @@ def begin_session(
         by.name,
         way,
         second_factor=second_factor,
+        provider_session=provider_session,
+        most=settings.sessions,
         oldest_ns=oldest_session_ns(settings, now_ns),
         idle_since_ns=idle_since_ns(settings, now_ns),
         by=by,

@@ -76,10 +76,12 @@ class Attempt:
 class SignedOn:
     """Whom a provider names. subject: the provider and what it calls them for good.
 
+    session: the provider and what it calls this login; None where it does not tell.
     sites: where its groups let them be; None where they do not tell.
     """
 
     subject: str
+    session: str | None
     name: str
     full_name: str | None
     roles: frozenset[Role]
@@ -121,6 +123,18 @@ class OpenIdProvider:
         claims = self._claims(id_token, attempt, answer.get("access_token"))
         return self._signed_on(claims)
 
+    @property
+    def client_id(self) -> str:
+        """Return how the provider calls this service."""
+        return self._settings.client_id
+
+    def signed_claims(self, token: str) -> Document:
+        """Return what a token says that the provider has signed. Raises ProviderError, SignOnRefusedError."""
+        try:
+            return dict(self._decoded(token).claims)
+        except (JoseError, ValueError, TypeError, KeyError) as error:
+            raise SignOnRefusedError(f"the token does not hold: {type(error).__name__}") from error
+
     def _exchange(self, code: str, attempt: Attempt) -> Document:
         settings = self._settings
         form = {
@@ -151,7 +165,7 @@ class OpenIdProvider:
             claims = CodeIDToken(
                 token.claims,
                 token.header,
-                options={"iss": {"essential": True, "value": self._issuer()}},
+                options={"iss": {"essential": True, "value": self.issuer()}},
                 params={
                     "nonce": attempt.nonce,
                     "client_id": self._settings.client_id,
@@ -185,16 +199,18 @@ class OpenIdProvider:
         found = _claim(claims, settings.roles_claim)
         told = [found] if isinstance(found, str) else found if isinstance(found, list) else []
         groups = [group for group in told if isinstance(group, str)]
-        full_name = claims.get("name")
+        full_name, session = claims.get("name"), claims.get("sid")
         return SignedOn(
-            f"{self._issuer()} {subject}",
+            f"{self.issuer()} {subject}",
+            f"{self.issuer()} {session}" if isinstance(session, str) and 0 < len(session) <= 255 else None,
             name,
             full_name[:100] if isinstance(full_name, str) and full_name.isprintable() else None,
             roles_of(groups, settings.roles),
             sites_of(groups, settings.sites),
         )
 
-    def _issuer(self) -> str:
+    def issuer(self) -> str:
+        """Return how the provider calls itself. Raises ProviderError."""
         return str(self._discovered()["issuer"])
 
     def _endpoint(self, name: str) -> str:

@@ -11,7 +11,7 @@ from fastapi.routing import APIRoute, iter_route_contexts
 
 from service.access.permissions import Permission
 from service.api import probes, problems
-from service.api.access import second_factor, sessions, tokens, users
+from service.api.access import passkeys, second_factor, sessions, tokens, users
 from service.api.access.gate import Gate
 from service.api.access.requirements import RouteNeeds, require, requirement_of
 from service.api.alarms import lists as alarm_lists
@@ -110,6 +110,7 @@ def create_app(
         backups,
         sessions,
         second_factor,
+        passkeys,
         tokens,
         users,
     ):

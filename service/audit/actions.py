@@ -105,9 +105,9 @@ MEANINGS: Mapping[AuditAction, str] = {
     AuditAction.PASSWORD_SET: (
         "Somebody changed a user's password, not kept here; `after` says whether they must change it."
     ),
-    AuditAction.SECOND_FACTOR_BEGUN: "Somebody began to set up an authenticator app.",
+    AuditAction.SECOND_FACTOR_BEGUN: "Somebody began to set up a second factor.",
     AuditAction.SECOND_FACTOR_ADDED: "Somebody set up a second factor of their own; `after` says which kind.",
-    AuditAction.SECOND_FACTOR_REMOVED: "Somebody removed their own second factor.",
+    AuditAction.SECOND_FACTOR_REMOVED: "Somebody removed their own second factor, or one passkey (`before`).",
     AuditAction.SECOND_FACTOR_RESET: "Somebody removed a user's second factor; a code lets them in once.",
     AuditAction.RECOVERY_CODES_MADE: "Somebody made other recovery codes of their own.",
     AuditAction.RECOVERY_CODE_USED: "A recovery code was used to log in; `after` says how many are left.",

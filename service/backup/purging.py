@@ -2,6 +2,7 @@
 
     told            what there is, before anything is touched
     alone           nobody else works on the data directory or the database
+    bucket          recordings in a store of its own, below their place, and nothing of others
     files           recordings, back-ups where they are asked for, keys, marks, all else in the data directory
     database        its file with what lies beside it; PostgreSQL: all tables, in one transaction
     looked again    what is still there is named, and is an error
@@ -20,9 +21,12 @@ from pathlib import Path
 from service.backup.errors import BackupError
 from service.backup.postgresql_database import PostgresqlPlace
 from service.backup.sqlite_database import SqlitePlace
+from service.configuration.recordings_url import BucketPlace
 from service.configuration.settings import Settings
 from service.process.installation import FILE as INSTALLATION
 from service.process.single_instance import exclusive
+from service.recording_store.bucket import objects_in
+from service.recording_store.bucket_client import Bucket
 from service.storage.database_url import parsed_url, readable_url
 
 LOCK = "service.lock"
@@ -37,6 +41,7 @@ class PurgePlan:
     named: the folders as people know them, also those within others.
     kept: files that people gave the service, and back-ups that nobody asked for; they stay wherever they lie.
     left: what this machine cannot delete, or was not asked to, in words.
+    bucket: where recordings are in a store of its own; objects: how many of them there are.
     """
 
     data: Path
@@ -49,6 +54,8 @@ class PurgePlan:
     number: int
     size_bytes: int
     tables: int
+    bucket: BucketPlace | None
+    objects: int
 
     @property
     def database(self) -> str:
@@ -57,7 +64,10 @@ class PurgePlan:
 
 
 def purge_plan(settings: Settings, config: Path | None, *, backups: bool) -> PurgePlan:
-    """Return what a purge deletes. Raises BackupError (there is no service's data), SQLAlchemyError."""
+    """Return what a purge deletes.
+
+    Raises BackupError (there is no service's data), SQLAlchemyError, StoreError (the bucket does not answer).
+    """
     data = settings.data_directory
     _require_data(settings)
     copies = settings.backup.directory
@@ -77,17 +87,21 @@ def purge_plan(settings: Settings, config: Path | None, *, backups: bool) -> Pur
     files = [settings.secrets_key_file, *_sqlite_files(settings.database_url)]
     beside = tuple(file for file in files if file.exists() and not _is_in(file, outer))
     found = [file for folder in outer for file in _files(folder, kept)] + list(beside)
+    bucket = None if settings.recordings_url is None else BucketPlace.of(settings.recordings_url)
+    objects = _Objects.of(bucket)
     return PurgePlan(
         data,
         outer,
         tuple(dict.fromkeys(one for one in folders if one.is_dir())),
         beside,
         kept,
-        tuple(_left(settings, kept, backups=backups)),
+        tuple(_left(settings, kept, objects, backups=backups)),
         settings.database_url,
         len(found),
-        sum(file.lstat().st_size for file in found),
+        sum(file.lstat().st_size for file in found) + objects.size_bytes,
         0 if _is_sqlite(settings.database_url) else len(PostgresqlPlace(settings.database_url).tables()),
+        bucket,
+        objects.number,
     )
 
 
@@ -103,12 +117,15 @@ def alone(plan: PurgePlan) -> Iterator[None]:
 def purge(plan: PurgePlan) -> None:
     """Delete it, while nobody else is there (`alone`).
 
-    Raises BackupError (somebody uses the database, or something is left), SQLAlchemyError, OSError.
+    Raises BackupError (somebody uses the database, or something is left), SQLAlchemyError, OSError (also
+    StoreError).
     """
     if _is_sqlite(plan.database_url):
         SqlitePlace(Path(parsed_url(plan.database_url).database or "")).require_alone()
     else:
         PostgresqlPlace(plan.database_url).remove_all()
+    if plan.bucket is not None:
+        _empty_bucket(plan.bucket)
     last = {plan.data / INSTALLATION, *(plan.data / name for name in LOCKS)}  # so that it can be begun again
     for folder in plan.folders:
         _empty(folder, plan.kept, last)
@@ -126,7 +143,37 @@ def what_is_there(plan: PurgePlan) -> Sequence[str]:
     found += [str(file) for file in plan.files if file.exists()]
     if not _is_sqlite(plan.database_url):
         found += [f"table {name}" for name in PostgresqlPlace(plan.database_url).tables()]
+    if plan.bucket is not None:
+        found += [f"{plan.bucket}/{one.key}" for one, is_of_record in objects_in(plan.bucket) if is_of_record]
     return found
+
+
+@dataclass(frozen=True, slots=True)
+class _Objects:
+    """What is in a bucket. others: that are none of the service's."""
+
+    number: int = 0
+    size_bytes: int = 0
+    others: int = 0
+
+    @classmethod
+    def of(cls, place: BucketPlace | None) -> "_Objects":
+        """Count what is below a place. Raises StoreError."""
+        number = size_bytes = others = 0
+        for one, is_of_record in () if place is None else objects_in(place):
+            if is_of_record:
+                number, size_bytes = number + 1, size_bytes + one.size_bytes
+            else:
+                others += 1
+        return cls(number, size_bytes, others)
+
+
+def _empty_bucket(place: BucketPlace) -> None:
+    """Delete what the service has put there. Raises StoreError."""
+    bucket = Bucket(place)
+    for one, is_of_record in objects_in(place):
+        if is_of_record:
+            bucket.delete(one.key)
 
 
 def _require_data(settings: Settings) -> None:
@@ -174,7 +221,7 @@ def _sqlite_files(url: str) -> list[Path]:
     return [file.with_name(f"{file.name}{ending}") for ending in SQLITE_BESIDE]
 
 
-def _left(settings: Settings, kept: Collection[Path], *, backups: bool) -> Iterator[str]:
+def _left(settings: Settings, kept: Collection[Path], objects: _Objects, *, backups: bool) -> Iterator[str]:
     copies = settings.backup.directory
     if copies is not None and not backups:
         yield f"{copies}: back-ups (--backups)"
@@ -183,5 +230,6 @@ def _left(settings: Settings, kept: Collection[Path], *, backups: bool) -> Itera
     )
     yield "files of passwords, keys and certificates that the settings name"
     if settings.recordings_url is not None:
-        yield f"{settings.recordings_url}: recordings in a store of its own; delete the bucket there"
+        yield f"{settings.recordings_url}: {objects.others} objects that are no recordings of the service"
+        yield "old versions of objects, where the store keeps them"
     yield "back-ups and exports elsewhere, the log of the system, what gateways and channels have sent"

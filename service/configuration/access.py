@@ -63,6 +63,7 @@ class OidcSettings(BaseModel):
 class AccessSettings(BaseModel):
     """How long logins and tokens last, and how many logins may fail in a row.
 
+    sessions: that a user has at a time; those that were used longest ago end.
     token_days: the longest that a token is taken; "unlimited" lets tokens be made that have no end.
     use_notice: shown before a login, which acknowledges it. second_factor_roles: those that need one.
     """
@@ -71,6 +72,7 @@ class AccessSettings(BaseModel):
 
     session_idle_minutes: float = Field(default=60.0, ge=1, le=10_080)
     session_hours: float = Field(default=12.0, ge=0.1, le=744)
+    sessions: int = Field(default=100, ge=1, le=1000)
     token_days: TokenDays | Literal["unlimited"] = 90.0
     failed_logins: int = Field(default=5, ge=1, le=1000)
     lockout_minutes: float = Field(default=15.0, ge=1, le=1440)

@@ -198,6 +198,21 @@ class UnknownObjects:
             yield Folder(digest, max(one.since_s for one in found), sum(one.size_bytes for one in found))
 
 
+def objects_in(place: BucketPlace) -> Iterator[tuple[StoredObject, bool]]:
+    """Yield all objects below a place, and whether each is a file of a record, also of one set apart.
+
+    Raises StoreError.
+    """
+    for one in Bucket(place).objects(""):
+        yield one, _is_of_record(one.key)
+
+
+def _is_of_record(key: str) -> bool:
+    folder, _, rest = key.partition("/")
+    digest, _, name = rest.partition("/")
+    return is_digest(digest) and folder in (digest[:2], APART) and is_stored_name(name)
+
+
 def _fetched(bucket: Bucket, place: str, digest: str, directory: Path) -> tuple[StoredFile, ...]:
     """Fetch the files of a record. Raises RecordingStoreError where they are missing or not those stored."""
     folder = _folder_key(digest)

@@ -81,6 +81,26 @@ class LastAdministratorError(StorageError):
         )
 
 
+class PasskeyExistsError(StorageError):
+    """A passkey is kept already, or has the name of another one of its user, or is one too many."""
+
+    def __init__(self, label: str, most: int) -> None:
+        super().__init__(
+            f"no passkey {label!r} was added: expected a name that you have not used, a device that is not "
+            f"registered yet, and at most {most} passkeys"
+        )
+
+
+class LastFactorError(StorageError):
+    """The last second factor of a user whose role needs one."""
+
+    def __init__(self, label: str) -> None:
+        super().__init__(
+            f"passkey {label!r} was not removed: your role needs a second factor, and it is your last one; "
+            "add another passkey or an authenticator app first, or ask a SECADM for a reset"
+        )
+
+
 class RolesNotSeparateError(StorageError):
     """A user is to have both roles that watch each other."""
 

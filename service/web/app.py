@@ -13,7 +13,7 @@ from service.web.load import routes as load
 from service.web.motor import relay_reports
 from service.web.motor import routes as motor
 from service.web.notifications import routes as notifications
-from service.web.people import account, second_factor
+from service.web.people import account, passkeys, second_factor
 from service.web.people import routes as people
 from service.web.plant import routes as plant
 from service.web.recording import routes as recording
@@ -37,6 +37,7 @@ ROOMS = (
     people,
     account,
     second_factor,
+    passkeys,
     audit,
     plant,
     notifications,

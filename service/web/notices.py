@@ -20,6 +20,8 @@ NOTICES: Final[Mapping[str, str]] = {
     "user-deleted": "The user is deleted.",
     "password-set": "The password is set. The user must change it. Sessions and tokens have ended.",
     "sessions-ended": "All sessions and tokens have ended.",
+    "passkey-added": "The passkey is added. Other sessions of yours have ended.",
+    "passkey-removed": "The passkey is removed. Other sessions of yours have ended.",
     "second-factor-removed": "The second factor is removed.",
     "token-revoked": "The token has ended.",
     "tokens-revoked": "All tokens have ended.",

@@ -17,6 +17,7 @@ from joserfc import jwt
 from joserfc.jwk import ECKey, KeyParameters, KeySet, RSAKey
 
 CLIENT = "statorwatch"
+LOGOUT = "http://schemas.openid.net/event/backchannel-logout"
 SECRET = "s3cret"  # noqa: S105 - of nobody
 
 
@@ -49,15 +50,18 @@ class IdentityProvider:
     def token(self, asked: dict[str, str]) -> str:
         """An ID token for a request to log in."""
         now = int(time.time())
-        claims = {
-            "iss": self.url,
-            "aud": CLIENT,
-            "exp": now + 300,
-            "iat": now,
-            "nonce": asked["nonce"],
-            **self.claims,
-            **self.spoil,
-        }
+        times = {"exp": now + 300, "iat": now}
+        claims = {"iss": self.url, "aud": CLIENT, **times, "nonce": asked["nonce"], **self.claims}
+        return self.signed(claims | self.spoil)
+
+    def logout_token(self, **claims: object) -> str:
+        """What the provider sends when it has ended logins; None leaves a claim out."""
+        now = int(time.time())
+        ended = {"iss": self.url, "aud": CLIENT, "iat": now, "exp": now + 120, "events": {LOGOUT: {}}}
+        return self.signed({**ended, "jti": secrets.token_hex(8), **claims})
+
+    def signed(self, claims: dict[str, Any]) -> str:
+        """A token with these claims, of those that are not None."""
         assert self.signing is not None
         algorithm = "RS256" if isinstance(self.signing, RSAKey) else "ES256"
         header = {"alg": algorithm, "kid": self.signing.kid, **self.header}

@@ -21,12 +21,12 @@ LONGEST_S = 30.0
 
 @contextmanager
 def listening(
-    app: ASGIApp, limits: ConnectionLimits, certificate: ServerCertificate | None = None
+    app: ASGIApp, limits: ConnectionLimits, certificate: ServerCertificate | None = None, *, port: int = 0
 ) -> Iterator[int]:
-    """The port at which an application is served, with TLS where there is a certificate."""
+    """The port at which an application is served, with TLS where there is a certificate. port: 0 for any."""
     with socket.socket() as listener:
         listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)  # as the service's own
-        listener.bind(("127.0.0.1", 0))
+        listener.bind(("127.0.0.1", port))
         port = listener.getsockname()[1]
         server = ApiServer(app, limits, certificate=certificate, on_shutdown=_end_of(app))
         thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]})

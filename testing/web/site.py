@@ -107,18 +107,24 @@ def log_in(repository: Repository, *roles: Role, user: str | None = None) -> str
             repository.add_user(user, roles, password=None, by=TESTS, now_ns=now_ns)
     secret, by = new_session(), Actor(user, "127.0.0.1")
     repository.begin_session(
-        digest_of(secret), user, "tests", oldest_ns=0, idle_since_ns=0, by=by, now_ns=now_ns
+        digest_of(secret), user, "tests", most=100, oldest_ns=0, idle_since_ns=0, by=by, now_ns=now_ns
     )
     return secret
 
 
 @contextmanager
 def running_site(
-    data: Path, browser: Browser, *, motors: Mapping[str, Motor] | None = None, **settings: object
+    data: Path,
+    browser: Browser,
+    *,
+    motors: Mapping[str, Motor] | None = None,
+    host: str = "127.0.0.1",
+    port: int = 0,
+    **settings: object,
 ) -> Iterator[Site]:
     """The site of a data directory with a migrated database, in this process.
 
-    motors: as the motors file has them, by name.
+    motors: as the motors file has them, by name. host: what pages are asked for at. port: 0 for any.
     """
     engine = connect(sqlite_url(data))
     context = ApiContext(
@@ -129,8 +135,8 @@ def running_site(
     )
     try:
         app = create_site(context)
-        with listening(app, connection_limits(context.settings)) as port:
-            site = Site(f"http://127.0.0.1:{port}", context, app, browser)
+        with listening(app, connection_limits(context.settings), port=port) as port:
+            site = Site(f"http://{host}:{port}", context, app, browser)
             try:
                 yield site
             finally:

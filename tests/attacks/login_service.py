@@ -29,7 +29,10 @@ PASSWORD = "correct horse battery"  # noqa: S105 - of nobody
 HASH = hashed(PASSWORD)
 
 Serve = Callable[..., httpx.Client]
-"""Starts a service with these settings of [access]; returns a browser that has not logged in."""
+"""Starts a service with these settings of [access]; returns a browser that has not logged in.
+
+address: at which people reach it.
+"""
 
 
 @pytest.fixture(autouse=True)
@@ -43,8 +46,9 @@ def logs() -> Iterator[list[MutableMapping[str, Any]]]:
 def serve(repository: Repository, store: RecordingStore, tmp_path: Path) -> Iterator[Serve]:
     with ExitStack() as services:
 
-        def started(**access: object) -> httpx.Client:
-            settings = Settings.model_validate({"data_directory": tmp_path, "access": access})
+        def started(address: str | None = None, **access: object) -> httpx.Client:
+            given = {"data_directory": tmp_path, "access": access, "notifications": {"address": address}}
+            settings = Settings.model_validate(given)
             site = create_site(ApiContext(settings, repository, store))
             return services.enter_context(serving(site, as_somebody=False))
 

@@ -158,6 +158,16 @@ def test_a_session_that_was_there_before_a_login_is_of_no_more_use(
     ]
 
 
+def test_a_user_has_no_more_sessions_than_the_settings_let_them(serve: Serve, repository: Repository) -> None:
+    browser, anna = serve(sessions=2), add_user(repository, "anna", Role.OPERATOR)
+    bert = add_user(repository, "bert", Role.OPERATOR)
+    with another(browser) as second, another(browser) as third, another(browser) as of_bert:
+        for one, wanted in ((browser, anna), (of_bert, bert), (second, anna), (third, anna)):
+            assert one.post(LOGIN, json=wanted).status_code == 200
+        status = [one.get(f"{API}/motors").status_code for one in (browser, second, third, of_bert)]
+    assert status == [401, 200, 200, 200], "the one that was used longest ago has ended, and no other user's"
+
+
 @pytest.mark.parametrize(
     "path", ["users", "users/anna", "tokens", "account", "account/tokens", "audit/entries", "users/nobody"]
 )

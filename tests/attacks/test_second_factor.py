@@ -90,9 +90,7 @@ def one_time_code(browser: httpx.Client, name: str) -> str:
     return str(answer.json()["code"])
 
 
-def test_a_stolen_password_alone_opens_nothing(
-    serve: Serve, repository: Repository, clock: Clock, tmp_path: Path
-) -> None:
+def test_a_stolen_password_alone_opens_nothing(serve: Serve, repository: Repository, clock: Clock) -> None:
     browser, anna = serve(), add_user(repository, "anna", Role.OPERATOR)
     browser.post(LOGIN, json=anna)
     set_up(browser, clock)
@@ -108,7 +106,6 @@ def test_a_stolen_password_alone_opens_nothing(
         check_login(
             repository,
             AccessSettings(),
-            lambda: Seal(tmp_path / "secrets.key"),
             "anna",
             PASSWORD,
             None,

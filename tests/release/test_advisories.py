@@ -8,7 +8,8 @@ from pathlib import Path
 import httpx
 import pytest
 
-from release.__main__ import FILE, PINNED
+import release.__main__ as command
+from release.__main__ import FILE, PINNED, accepted, main
 from release.advisories import OLDEST, AdvisoryError, affected, fetch, read
 from release.pins import Pin, read_pins
 from tests.docs.pages import ROOT
@@ -129,4 +130,25 @@ def test_a_file_of_the_last_days_is_read(tmp_path: Path) -> None:
 @pytest.mark.skipif(not FILE.exists(), reason="no advisories were fetched into this tree: make advisories")
 def test_no_pinned_package_has_a_known_advisory() -> None:
     pins = [pin for name in PINNED for pin in read_pins(ROOT / name)]
-    assert affected(pins, read(FILE, datetime.now(UTC)), {}) == []
+    assert affected(pins, read(FILE, datetime.now(UTC)), accepted()) == []
+
+
+@pytest.mark.parametrize("affects", [None, "before", "now"])
+def test_the_audit_of_a_release_ends_with_1_where_a_pin_is_affected(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], affects: str | None
+) -> None:
+    """The repository's own pins, against a file as `make advisories` writes it."""
+    pins = {pin.name: pin.version for name in PINNED for pin in read_pins(ROOT / name)}
+    packages: dict[str, list[object]] = {name: [] for name in pins}
+    if affects is not None:
+        end = [{"fixed": pins["jinja2"]}] if affects == "before" else [{"last_affected": pins["jinja2"]}]
+        concerned = {"ranges": [[{"introduced": "0"}, *end]], "versions": []}
+        one = {"id": "GHSA-5", "aliases": [], "summary": "a sandbox breakout", "affected": [concerned]}
+        packages["jinja2"] = [one]
+    file = tmp_path / "advisories.json"
+    file.write_text(json.dumps({"made": datetime.now(UTC).isoformat(), "packages": packages}))
+    monkeypatch.setattr(command, "FILE", file)
+    assert main("audit") == (1 if affects == "now" else 0)
+    told = capsys.readouterr()
+    assert ("GHSA-5" in told.err) is (affects == "now")
+    assert f"{len(pins)} packages" in told.out

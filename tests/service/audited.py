@@ -28,6 +28,7 @@ from service.storage.records import SERVICE, Alarm
 from service.storage.states import AlarmKind
 from service.timing.backoff import Backoff
 from testing.service.accounts import EVERYTHING, TESTER, TESTS, token_of
+from testing.service.authenticator import Authenticator
 from testing.service.database import make_database
 from testing.service.diagnosed import add_diagnosed
 from testing.service.job_runner import register_runner
@@ -40,6 +41,7 @@ ME = TESTER
 PERSON = "person-"
 """How the names begin of those who do what ME cannot: log in, and end all of their tokens."""
 Body = dict[str, str]
+ADDRESS = "http://localhost"
 PASSWORD = "correct horse battery"  # noqa: S105 - of nobody
 
 
@@ -137,6 +139,24 @@ class Prepared:
                 assert session.post(f"{API}/account/totp/confirmation", json=shown).is_success
             return session.post(path, json=json, data=data)
 
+    def with_passkey(
+        self, path: str, *, added: bool = False, json: Body | None = None, data: Body | None = None
+    ) -> httpx.Response:
+        """Send a document or a form in a session of somebody new, with what a device answers in it.
+
+        added: whose passkey is added already; its id takes the place of {passkey_id} in the path.
+        """
+        device = Authenticator(ADDRESS, "localhost")
+        with httpx.Client(
+            base_url=self.client.base_url, cookies=self.login().cookies, trust_env=False, timeout=30
+        ) as session:
+            asked = session.post(f"{API}/account/passkeys/options", json={"password": PASSWORD}).json()
+            made = {"label": "blue key", "answer": device.create(asked["options"])}
+            if not added:
+                return session.post(path, json=json and made, data=data and made)
+            kept = session.post(f"{API}/account/passkeys", json=made).json()
+            return session.post(path.replace("{passkey_id}", kept["id"]), json=json, data=data)
+
     def note(self, kind: str = "note") -> str:
         return str(self.client.post(f"{MOTOR}/notes", json={"text": "a note", "kind": kind}).json()["id"])
 
@@ -206,7 +226,8 @@ def audited_service(data: Path, create: Callable[[ApiContext], FastAPI]) -> Iter
     register_runner(repository)
     store = FolderStore(data / "recordings")
     channels: dict[str, Channel] = {"hook": CommandChannel(kind="command", command=("/bin/true",))}
-    settings = Settings(data_directory=data, notifications=NotificationSettings(channels=channels))
+    told = NotificationSettings(channels=channels, address=ADDRESS)
+    settings = Settings(data_directory=data, notifications=told)
     motors = {one.motor.name: one.motor for one in two_motor_plant().motors}
     app = create(ApiContext(settings, repository, store, motors=motors))
     with serving(app) as client:

@@ -1,9 +1,10 @@
 """Users, sessions and tokens in the API. No answer has a password or a hash; one has a new token."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, StringConstraints, model_validator
 
+from service.access.passkeys import LONGEST_ANSWER, MOST_PASSKEYS
 from service.access.permissions import Permission
 from service.access.second_factors import CODES
 from service.access.user_names import NAME_RULE, name_of
@@ -37,12 +38,20 @@ Sites = Annotated[set[SiteName], Field(max_length=MOST_SITES)]
 FactorCodeText = Annotated[str, StringConstraints(min_length=1, max_length=40)]
 
 
-class LoginRequest(RequestDocument):
-    """Who logs in. code: of their authenticator app, or a recovery code, where they have a second factor."""
+PasskeyText = Annotated[str, StringConstraints(min_length=2, max_length=LONGEST_ANSWER)]
+AnyName = Annotated[str, StringConstraints(min_length=1, max_length=200)]
 
-    name: Annotated[str, StringConstraints(min_length=1, max_length=200)]
+
+class LoginRequest(RequestDocument):
+    """Who logs in. code: of their authenticator app, or a recovery code, where they have a second factor.
+
+    passkey: in place of the code, what a browser's `PublicKeyCredential.toJSON()` gives, as text.
+    """
+
+    name: AnyName
     password: Password
     code: FactorCodeText | None = None
+    passkey: PasskeyText | None = None
 
 
 class LoginWays(Document):
@@ -104,6 +113,43 @@ class TotpProposal(Document):
 
 class RecoveryCodes(Document):
     """Codes that stand for the second factor, each of them once. They are not kept here."""
+
+    recovery_codes: Annotated[list[str], Field(max_length=CODES)]
+
+
+class PasskeyOptions(Document):
+    """What browsers ask a device with: PublicKeyCredentialCreationOptionsJSON, or ...RequestOptionsJSON.
+
+    `PublicKeyCredential.parseCreationOptionsFromJSON` and `parseRequestOptionsFromJSON` read them.
+    """
+
+    options: dict[str, Any]
+
+
+class PasskeyAnswer(RequestDocument):
+    """What a device has made: `PublicKeyCredential.toJSON()`, as text. label: what its owner calls it."""
+
+    label: Person
+    answer: PasskeyText
+
+
+class Passkey(Document):
+    """A passkey of a user. used_time: when it last let them in."""
+
+    id: str
+    label: str
+    created_time: Time = Field(validation_alias="created_ns")
+    used_time: Time | None = Field(validation_alias="used_ns")
+
+
+class Passkeys(Document):
+    """All passkeys of a user."""
+
+    items: Annotated[list[Passkey], Field(max_length=MOST_PASSKEYS)]
+
+
+class NewPasskey(Passkey):
+    """A passkey that was added. recovery_codes: for who had no second factor, shown this once."""
 
     recovery_codes: Annotated[list[str], Field(max_length=CODES)]
 

@@ -37,7 +37,7 @@ async def propose_totp(
     context: Context, request: Request, asking: Asking, wanted: OwnPassword
 ) -> TotpProposal:
     """Return a new secret for an authenticator app, which counts once a code of it is sent back."""
-    _require_session(asking)
+    require_session(asking)
     await check_own_password(context, request, asking, wanted.password)
     made = await run_in_threadpool(
         lambda: second_factors.propose_totp(
@@ -58,7 +58,7 @@ async def propose_totp(
 )
 def confirm_totp(context: Context, asking: Asking, wanted: FactorCode) -> RecoveryCodes:
     """Have the app count whose code this is, and return recovery codes, which are shown this once."""
-    session = _require_session(asking)
+    session = require_session(asking)
     try:
         codes = second_factors.confirm_totp(
             context.repository,
@@ -85,7 +85,7 @@ async def make_recovery_codes(
     context: Context, request: Request, asking: Asking, wanted: OwnPassword
 ) -> RecoveryCodes:
     """Return other recovery codes, which are shown this once; the old ones count no more."""
-    _require_session(asking)
+    require_session(asking)
     await check_own_password(context, request, asking, wanted.password)
     codes = second_factors.new_recovery_codes()
     await run_in_threadpool(_keep_codes, context, asking, codes)
@@ -102,7 +102,7 @@ async def remove_second_factor(
     context: Context, request: Request, asking: Asking, wanted: OwnPassword
 ) -> None:
     """Remove the own second factor; 409 where a role needs it."""
-    _require_session(asking)
+    require_session(asking)
     await check_own_password(context, request, asking, wanted.password)
     if second_factors.is_required(context.settings.access, asking.actor.roles):
         raise ProblemError(
@@ -151,7 +151,7 @@ def _keep_codes(context: ApiContext, asking: Caller, codes: Sequence[str]) -> No
     repository.replace_recovery_codes(name, digests, by=asking.actor, now_ns=time.time_ns())
 
 
-def _require_session(asking: Caller) -> str:
+def require_session(asking: Caller) -> str:
     """Return the digest of the session that asks. Raises ProblemError (403): a token changes no factor."""
     if asking.session is None:
         raise ProblemError(HTTPStatus.FORBIDDEN, "log in to change your second factor; a token may not")

@@ -10,10 +10,11 @@ from fastapi.concurrency import run_in_threadpool
 
 from service.access import logins
 from service.access.identities import permissions_after_login
+from service.access.passkeys import NoPasskeysError, PasskeyPlace, PasskeyRefusedError, require_passkey
 from service.access.passwords import UnusablePasswordError, new_hash
 from service.access.permissions import Permission
 from service.access.refusals import NOBODY, Refusal
-from service.access.second_factors import is_missing
+from service.access.second_factors import is_missing, is_passed
 from service.api.access.callers import FIRST_USER, Asking, Caller
 from service.api.access.client_address import ClientAddress, client_address
 from service.api.access.cookies import clear_session, session_secret, set_session
@@ -76,10 +77,9 @@ async def begin_session(
         logins.check_login,
         context.repository,
         context.settings.access,
-        partial(seal_of, context),
         account,
         wanted.password,
-        wanted.code,
+        _second_look(context, wanted),
         origin.address,
     )
     second_factor = await _check(context, account, origin, look)
@@ -101,6 +101,32 @@ async def begin_session(
     set_session(response, secret, seconds=seconds, encrypted=origin.is_encrypted)
     response.headers["Cache-Control"] = "no-store"
     return user
+
+
+def _second_look(context: ApiContext, wanted: LoginRequest) -> logins.SecondLook | None:
+    """Return what looks at what is shown besides the password; None where nothing is."""
+    repository = context.repository
+    if wanted.passkey is not None:
+        answer = wanted.passkey
+
+        def look_at_passkey(by: Actor, *, now_ns: int) -> str | None:
+            try:
+                place = PasskeyPlace.of(context.settings.notifications.address)
+                require_passkey(repository, seal_of(context), place, by.name, answer, now_ns=now_ns)
+            except (NoPasskeysError, PasskeyRefusedError) as error:
+                return str(error)
+            return None
+
+        return look_at_passkey
+    if wanted.code is not None:
+        code = wanted.code
+
+        def look_at_code(by: Actor, *, now_ns: int) -> str | None:
+            passed = is_passed(repository, seal_of(context), by.name, code, by=by, now_ns=now_ns)
+            return None if passed else "wrong or used code"
+
+        return look_at_code
+    return None
 
 
 @router.post(

@@ -5,12 +5,15 @@ from functools import partial
 from http import HTTPStatus
 from typing import Annotated
 
-from fastapi import APIRouter, Query, Request, Response
+from fastapi import APIRouter, Form, Query, Request, Response
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import HTMLResponse, RedirectResponse
 
+from core.units import NANOSECONDS_PER_SECOND
 from service.access import logins
 from service.access.oidc import Attempt, OpenIdProvider, ProviderError, SignedOn, SignOnRefusedError
+from service.access.provider_logout import ProviderLogout, provider_logout
+from service.access.refusals import NOBODY, Refusal
 from service.api.access.client_address import client_address
 from service.api.access.cookies import session_secret, set_session
 from service.api.access.requirements import open_to_all
@@ -23,6 +26,7 @@ from service.storage.records import Actor, User
 PATH = "/login/oidc"
 COOKIE = "statorwatch_sign_on"
 ATTEMPT_S = 600
+LONGEST_TOKEN = 6000
 AFTERWARDS = "/"
 
 DONE = f"""<!doctype html><html lang="en"><meta charset="utf-8"><title>StatorWatch</title>
@@ -110,7 +114,49 @@ def sign_on_router(provider: OpenIdProvider) -> APIRouter:
         response.delete_cookie(COOKIE, path="/api/v1" + PATH, httponly=True, samesite="lax")
         return response
 
+    @router.post(
+        f"{PATH}/logout",
+        responses=problems(400, 413),
+        dependencies=[open_to_all()],
+    )
+    async def end_logins(
+        context: Context,
+        request: Request,
+        response: Response,
+        logout_token: Annotated[str, Form(max_length=LONGEST_TOKEN)],
+    ) -> None:
+        """Take what the provider says of logins that it has ended (OpenID Connect Back-Channel Logout).
+
+        One that it names by `sid` ends; with `sub` alone all sessions and tokens of that user do.
+        """
+        response.headers["Cache-Control"] = "no-store"
+        origin = client_address(request.scope, context.settings.access.proxy)
+        async with asking.admitted():
+            try:
+                found = await run_in_threadpool(
+                    partial(provider_logout, provider, logout_token, now_s=time.time())
+                )
+                await run_in_threadpool(_end, context, found, origin.address)
+            except ProviderError as trouble:
+                raise _unavailable(trouble) from trouble
+            except SignOnRefusedError as refusal:
+                by = Actor(NOBODY, origin.address)
+                await run_in_threadpool(
+                    context.refusals.note, context.repository, Refusal.TOKEN, by, f"POST /api/v1{PATH}/logout"
+                )
+                raise ProblemError(HTTPStatus.BAD_REQUEST, str(refusal)) from refusal
+
     return router
+
+
+def _end(context: ApiContext, found: ProviderLogout, address: str) -> None:
+    """End the logins that the provider has ended. Raises SignOnRefusedError for what was said before."""
+    repository, now_ns = context.repository, time.time_ns()
+    expires_ns = found.expires_s * NANOSECONDS_PER_SECOND
+    if not repository.use_once(found.digest, expires_ns=expires_ns, now_ns=now_ns):
+        raise SignOnRefusedError("the logout token was used before")
+    by = Actor(found.issuer, address)
+    repository.end_at_provider(found.subject, found.session, by=by, now_ns=now_ns)
 
 
 def _begin(context: ApiContext, found: SignedOn, address: str, old: str | None) -> str:
@@ -133,6 +179,7 @@ def _begin(context: ApiContext, found: SignedOn, address: str, old: str | None) 
             by,
             provider,
             second_factor=True,
+            provider_session=found.session,
             ends=old,
             now_ns=time.time_ns(),
         )

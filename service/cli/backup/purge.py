@@ -43,8 +43,8 @@ def purge(
         return
     results().print(
         Text(
-            f"deleted: {plan.number} files, {plan.size_bytes / 1e6:.1f} MB, {plan.tables} tables; "
-            "looked again: nothing is left of them"
+            f"deleted: {plan.number} files, {plan.size_bytes / 1e6:.1f} MB, {plan.tables} tables, "
+            f"{plan.objects} objects of a bucket; looked again: nothing is left of them"
         ),
         soft_wrap=True,
     )
@@ -60,6 +60,8 @@ def _tell(plan: PurgePlan, audit: Path | None) -> None:
         Text(f"  database {plan.database}" + (f", {plan.tables} tables" if plan.tables else "")),
         soft_wrap=True,
     )
+    if plan.bucket is not None:
+        say(Text(f"  {plan.bucket}, {plan.objects} objects"), soft_wrap=True)
     say(Text("stays, to be deleted elsewhere:"))
     for words in plan.left:
         say(Text(f"  {words}"), soft_wrap=True)
@@ -88,6 +90,8 @@ def _export(settings: Settings, plan: PurgePlan, audit: Path) -> None:
         "files": plan.number,
         "size_bytes": plan.size_bytes,
         "folders": [str(one) for one in plan.named],
+        "bucket": None if plan.bucket is None else str(plan.bucket),
+        "objects": plan.objects,
     }
     try:
         repository = Repository(engine)
@@ -111,6 +115,8 @@ def _document(plan: PurgePlan, audit: Path | None) -> dict[str, object]:
         "files": plan.number,
         "size_bytes": plan.size_bytes,
         "tables": plan.tables,
+        "objects": plan.objects,
+        "bucket": None if plan.bucket is None else str(plan.bucket),
         "folders": [str(one) for one in plan.named],
         "database": plan.database,
         "left": list(plan.left),

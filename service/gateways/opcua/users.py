@@ -20,7 +20,6 @@ from service.access.logins import LoginLockedError, LoginRefusedError, account_o
 from service.access.permissions import Permission, permissions_of
 from service.configuration.access import AccessSettings
 from service.gateways.opcua.worker_threads import WorkerThreads
-from service.process.sealing import Seal
 from service.storage import NotFoundError, Repository
 from service.storage.records import Actor
 from service.storage.records import User as Account
@@ -164,7 +163,7 @@ class ServiceUsers(UserManager):  # type: ignore[misc]
         attempt(self._repository, self._settings, name, address, now_ns=now_ns)
         account = self._known(name)  # before its password, which may be changed meanwhile
         # OPC UA has no place for a code: who needs one is refused, and programs have users of their own.
-        check_login(self._repository, self._settings, _no_seal, name, password, None, address, now_ns=now_ns)
+        check_login(self._repository, self._settings, name, password, None, address, now_ns=now_ns)
         if account is None:
             raise LoginRefusedError
         return account
@@ -178,10 +177,6 @@ class ServiceUsers(UserManager):  # type: ignore[misc]
             return self._repository.user(name)
         except NotFoundError:
             return None
-
-
-def _no_seal() -> Seal:
-    raise LoginRefusedError
 
 
 @contextmanager

@@ -54,7 +54,8 @@ class UserRow(Base):
 class UserSessionRow(Base):
     """A login, until it is ended. digest: SHA-256 of the secret that the client has.
 
-    second_factor: whether more was shown than a password.
+    second_factor: whether more was shown than a password. provider_session: an identity provider, and what
+    it calls this login.
     """
 
     __tablename__ = "user_sessions"
@@ -65,6 +66,7 @@ class UserSessionRow(Base):
     created_ns: Mapped[int]
     used_ns: Mapped[int] = mapped_column(index=True)
     second_factor: Mapped[bool]
+    provider_session: Mapped[str | None] = mapped_column(String(600), index=True)
 
 
 class RecoveryCodeRow(Base):
@@ -74,6 +76,35 @@ class RecoveryCodeRow(Base):
 
     digest: Mapped[str] = mapped_column(String(64), primary_key=True)
     user: Mapped[str] = mapped_column(ForeignKey("users.name"), index=True)
+
+
+class PasskeyRow(Base):
+    """A passkey (WebAuthn) of a user. credential, public_key: base64url, as browsers write them.
+
+    signatures: how many the device has counted; 0 where it counts none. used_ns: when it last let them in.
+    """
+
+    __tablename__ = "passkeys"
+
+    id: Mapped[str] = mapped_column(String(36), primary_key=True)
+    user: Mapped[str] = mapped_column(ForeignKey("users.name"), index=True)
+    label: Mapped[str]
+    credential: Mapped[str] = mapped_column(String(1400), unique=True)
+    public_key: Mapped[str]
+    signatures: Mapped[int]
+    created_ns: Mapped[int]
+    used_ns: Mapped[int | None]
+
+
+class UsedOnceRow(Base):
+    """What counts once and was used, until it would be too old anyway: a challenge that a passkey answered,
+    a logout token. digest: SHA-256 of it.
+    """
+
+    __tablename__ = "used_once"
+
+    digest: Mapped[str] = mapped_column(String(64), primary_key=True)
+    expires_ns: Mapped[int] = mapped_column(index=True)
 
 
 class LoginLinkRow(Base):

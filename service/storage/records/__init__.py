@@ -1,7 +1,15 @@
 """What the repository hands out: plain values, free of the database session they were read in."""
 
 from service.roles import Role
-from service.storage.records.access import ApiToken, LoginLimits, TotpSecrets, User, UserSession
+from service.storage.records.access import (
+    ApiToken,
+    LoginLimits,
+    NewPasskey,
+    Passkey,
+    TotpSecrets,
+    User,
+    UserSession,
+)
 from service.storage.records.actors import COMMAND_LINE, SERVICE, Actor
 from service.storage.records.alarms import (
     Alarm,
@@ -159,11 +167,13 @@ __all__ = [
     "MotorHealth",
     "MotorVersion",
     "NewNotification",
+    "NewPasskey",
     "Notification",
     "NotificationTarget",
     "Occurrence",
     "OldRecording",
     "Page",
+    "Passkey",
     "Quarantine",
     "RecordObservation",
     "RecordedStarts",

@@ -52,6 +52,29 @@ class TotpSecrets:
 
 
 @dataclass(frozen=True, slots=True)
+class NewPasskey:
+    """What a device has made for a user. credential, public_key: base64url. signatures: counted so far."""
+
+    credential: str
+    public_key: str
+    signatures: int
+
+
+@dataclass(frozen=True, slots=True)
+class Passkey:
+    """A passkey of a user. signatures: how many its device has counted; 0 where it counts none."""
+
+    id: str
+    user: str
+    label: str
+    credential: str
+    public_key: str
+    signatures: int
+    created_ns: int
+    used_ns: int | None
+
+
+@dataclass(frozen=True, slots=True)
 class UserSession:
     """A login of a user; it was last used at used_ns.
 

@@ -2,6 +2,7 @@
 
 from service.storage.repository.access.failed_logins import FailedLoginRows
 from service.storage.repository.access.login_links import LoginLinkRows
+from service.storage.repository.access.passkeys import PasskeyRows
 from service.storage.repository.access.second_factors import SecondFactorRows
 from service.storage.repository.access.tokens import TokenRows
 from service.storage.repository.access.user_sessions import UserSessionRows
@@ -108,6 +109,7 @@ class Repository(
     NotificationRows,
     UserRows,
     UserSessionRows,
+    PasskeyRows,
     SecondFactorRows,
     LoginLinkRows,
     TokenRows,

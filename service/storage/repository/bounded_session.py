@@ -27,10 +27,12 @@ from service.storage.models import (
     JobRunnerRow,
     LoginLinkRow,
     MotorRow,
+    PasskeyRow,
     RecordingRow,
     RecoveryCodeRow,
     SiteRow,
     StateCountRow,
+    UsedOnceRow,
     UserRow,
     UserSessionRow,
 )
@@ -47,8 +49,10 @@ OF_NO_SITE: frozenset[type[Base]] = frozenset(
         GatewayRow,
         JobRunnerRow,
         LoginLinkRow,
+        PasskeyRow,
         RecoveryCodeRow,
         StateCountRow,
+        UsedOnceRow,
         UserRow,
         UserSessionRow,
     }

@@ -16,6 +16,7 @@ from service.api.access.schemas import PasswordChange
 from service.api.problems import WrongFieldError
 from service.storage import NotFoundError
 from service.web.forms import document_of_form
+from service.web.people.passkeys import origin_of_passkeys
 from service.web.people.token_form import TokenForm, show_new_token, token_request
 from service.web.people.users import MOST_SHOWN, lifetimes, scope_choices, site_names, token_lines
 from service.web.view import Looking
@@ -35,6 +36,7 @@ def show_account(view: Looking) -> Response:
         user = repository.user(asking.actor.name)
     except NotFoundError:  # known to a proxy, or nobody yet
         user = None
+    origin, no_passkeys = origin_of_passkeys(view.context)
     found = [] if user is None else repository.tokens(user=user.name, limit=MOST_SHOWN).items
     return view.page(
         "people/account.html",
@@ -43,6 +45,9 @@ def show_account(view: Looking) -> Response:
         known=user is not None,
         has_password=user is not None and user.has_password,
         is_factor_required=is_required(view.context.settings.access, asking.actor.roles),
+        passkeys=repository.passkeys(asking.actor.name),
+        passkey_origin=origin,
+        no_passkeys=no_passkeys,
         is_nobody=asking.way is Way.NONE,
         meanings=[(one.value, MEANINGS[one]) for one in account.permissions],
         tokens=token_lines(view.context, found, now_ns=view.now_ns),

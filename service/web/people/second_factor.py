@@ -39,7 +39,7 @@ def confirm_totp(view: Looking, code: Secret = "") -> Response:
     """Have the app count whose code this is, and show the recovery codes."""
     wanted = document_of_form(FactorCode, {"code": code})
     made = second_factor.confirm_totp(view.context, view.asking, wanted)
-    return _codes(view, made.recovery_codes, "/account")
+    return show_codes(view, made.recovery_codes, "/account")
 
 
 @router.post("/account/recovery-codes", dependencies=ACCOUNT)
@@ -47,7 +47,7 @@ async def make_recovery_codes(view: Looking, request: Request, password: Secret 
     """Show other recovery codes."""
     wanted = document_of_form(OwnPassword, {"password": password})
     made = await second_factor.make_recovery_codes(view.context, request, view.asking, wanted)
-    return _codes(view, made.recovery_codes, "/account")
+    return show_codes(view, made.recovery_codes, "/account")
 
 
 @router.post("/account/second-factor/removal", dependencies=ACCOUNT)
@@ -62,10 +62,10 @@ async def remove_second_factor(view: Looking, request: Request, password: Secret
 def reset_second_factor(view: Looking, name: UserName) -> Response:
     """Remove a user's second factor, and show the code that lets them in once."""
     made = second_factor.reset_second_factor(view.context, name, view.asking.actor)
-    return _codes(view, [made.code], address("/people", name), user=name)
+    return show_codes(view, [made.code], address("/people", name), user=name)
 
 
-def _codes(view: View, codes: list[str], back: str, *, user: str | None = None) -> Response:
+def show_codes(view: View, codes: list[str], back: str, *, user: str | None = None) -> Response:
     """Return the page with codes. user: to whom one is handed; None for one's own."""
     return _once(view.page("people/codes.html", title="Codes", codes=codes, back=back, handed_to=user))
 

@@ -8,6 +8,7 @@ from starlette.responses import RedirectResponse, Response
 
 from service.access.identities import is_account_first, permissions_after_login
 from service.access.logins import LoginLockedError
+from service.access.passkeys import LONGEST_ANSWER
 from service.access.permissions import Permission
 from service.api.access import sessions
 from service.api.access.requirements import open_to_all, require
@@ -18,6 +19,7 @@ from service.web.addresses import LONGEST, own_address
 from service.web.forms import document_of_form
 from service.web.navigation import home_of
 from service.web.notices import notice
+from service.web.people.passkeys import origin_of_passkeys
 from service.web.rendering import html_response, rendered
 from service.web.view import Looking
 
@@ -48,12 +50,14 @@ async def log_in(
     name: Annotated[str, Form(max_length=200)],
     password: Annotated[str, Form(max_length=1000)],
     code: Annotated[str, Form(max_length=40)] = "",
+    passkey: Annotated[str, Form(max_length=LONGEST_ANSWER)] = "",
     next_: Annotated[str | None, Form(alias="next", max_length=LONGEST)] = None,
 ) -> Response:
     """Begin a session and go on to where somebody wanted to go."""
     answer = RedirectResponse("/", status_code=303)
     try:
-        wanted = document_of_form(LoginRequest, {"name": name, "password": password, "code": code})
+        fields = {"name": name, "password": password, "code": code, "passkey": passkey}
+        wanted = document_of_form(LoginRequest, fields)
         user = await sessions.begin_session(context, request, answer, wanted)
     except (ProblemError, LoginLockedError) as error:
         status = error.status if isinstance(error, ProblemError) else 429
@@ -82,4 +86,5 @@ def _about(context: Context, next_: str, *, has_users: bool) -> dict[str, object
         "next": next_,
         "has_users": has_users,
         "ways": sessions.get_login_ways(context),
+        "passkey_origin": origin_of_passkeys(context)[0],
     }

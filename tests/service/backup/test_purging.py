@@ -11,8 +11,12 @@ from service.audit.entries import START
 from service.audit.exports import read_export
 from service.audit.verification import verify
 from service.cli.app import main
+from service.configuration.recordings_url import BucketPlace
 from service.process.sealing import Seal
+from service.recording_store.bucket import BucketStore
+from service.recording_store.bucket_client import Bucket
 from service.storage import connect
+from testing.service.s3_server import BUCKET, Fault, S3Server
 from tests.service.backup.conftest import Data, files_below
 
 
@@ -160,3 +164,81 @@ def test_no_link_is_followed_and_no_other_directory_is_taken(
     assert _purge(config, "--without-audit", "--yes") == 1
     assert "expected the data directory of a service" in capsys.readouterr().err
     assert (elsewhere / "other.txt").exists()
+
+
+@pytest.fixture
+def config_of_bucket(config: Path, place: BucketPlace, s3: S3Server) -> Path:
+    """The same service with its recordings in a bucket, where others have something, too."""
+    others = ("recordings_directory", "[backup]", "directory")
+    lines = [line for line in config.read_text().splitlines() if not line.startswith(others)]
+    config.write_text("\n".join([f'recordings_url = "{place}"', *lines]))
+    store = BucketStore(place, None)
+    for text in (b"R1", b"R2"):
+        store.store({"C_0001.CFG": text, "C_0001.DAT": text * 100})
+    store.unknown.move_apart(store.store({"C_0001.CFG": b"R3", "C_0001.DAT": b"R3"}).digest)
+    for key in OF_OTHERS:
+        s3.client().put_object(Bucket=BUCKET, Key=key.format(prefix=place.prefix), Body=b"not of the plant")
+    return config
+
+
+OF_OTHERS = (
+    "{prefix}notes of somebody",
+    "{prefix}ab/notes/C_0001.CFG",
+    "another-plant/{prefix}ab/" + "ab" * 32 + "/C_0001.CFG",
+    "zz/" + "ab" * 32 + "/C_0001.CFG",
+)
+
+
+@pytest.mark.parametrize("database_url", ["sqlite"], indirect=True)
+def test_a_bucket_is_emptied_of_the_plant_and_of_nothing_else(
+    data: Data, config_of_bucket: Path, place: BucketPlace, s3: S3Server, capsys: pytest.CaptureFixture[str]
+) -> None:
+    before = set(s3.keys_of())
+    outside = config_of_bucket.with_name("audit.jsonl")
+    assert _purge(config_of_bucket, "--audit", outside, "--yes", "--json") == 0
+    told = capsys.readouterr()
+    words = " ".join(told.err.split())
+    assert f"{place}, 6 objects" in words, "told before"
+    assert f"{place}: 2 objects that are no recordings of the service" in words
+    document = json.loads(told.out)
+    assert (document["bucket"], document["objects"]) == (str(place), 6)
+    left = set(s3.keys_of())
+    assert left == {key.format(prefix=place.prefix) for key in OF_OTHERS} | {
+        key for key in before if not key.startswith(place.prefix) and "another-plant" not in key
+    }
+    assert json.loads(list(read_export(outside))[-1].after or "{}")["objects"] == 6
+
+
+@pytest.mark.parametrize("database_url", ["sqlite"], indirect=True)
+@pytest.mark.parametrize("fault", [Fault.BUSY, Fault.DENIED, Fault.IS_A_PAGE])
+def test_a_store_that_does_not_do_it_leaves_all_as_it_was(
+    data: Data, config_of_bucket: Path, s3: S3Server, fault: Fault, capsys: pytest.CaptureFixture[str]
+) -> None:
+    before = s3.keys_of()
+    s3.fail(fault)
+    assert _purge(config_of_bucket, "--without-audit", "--yes") == 1
+    assert "s3://" in capsys.readouterr().err
+    s3.fail(Fault.NONE)
+    assert s3.keys_of() == before
+    assert _tables(data.url)
+
+
+@pytest.mark.parametrize("database_url", ["sqlite"], indirect=True)
+def test_a_purge_that_a_store_interrupts_is_begun_again(
+    data: Data, config_of_bucket: Path, place: BucketPlace, s3: S3Server, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    deleted = Bucket.delete
+    left = iter([True, True])
+
+    def until_it_fails(self: Bucket, key: str) -> None:
+        if next(left, None) is None:
+            s3.fail(Fault.DENIED)
+        deleted(self, key)
+
+    with monkeypatch.context() as failing:
+        failing.setattr(Bucket, "delete", until_it_fails)
+        assert _purge(config_of_bucket, "--without-audit", "--yes") == 1
+    s3.fail(Fault.NONE)
+    assert _purge(config_of_bucket, "--without-audit", "--yes") == 0
+    assert [key for key in s3.keys_of() if key.startswith(place.prefix) and key.endswith(".DAT")] == []
+    assert not data.store.root.parent.exists() or not files_below(data.store.root.parent)

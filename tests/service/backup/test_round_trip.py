@@ -16,7 +16,9 @@ from service.backup.restoring import Place, restore_backup
 from service.backup.verification import verify_backup
 from service.retention.deletion import delete_recording
 from service.storage import Repository, connect, migrate
+from service.storage.records import NewPasskey, Role
 from service.storage.states import BackupState
+from testing.service.accounts import TESTS
 from testing.service.plants import NOW_NS
 from testing.waiting import eventually
 from tests.service.backup.conftest import Data, Rows, files_below, new_name
@@ -39,6 +41,24 @@ def test_database_and_recordings_come_back_in_an_empty_place(
     again = Repository(engine)
     assert again.request_diagnosis(again.recordings(limit=1).items[0].id, now_ns=NOW_NS)
     assert again.latest_verified_backup() is None, "that one was under way when it was copied"
+    engine.dispose()
+
+
+def test_second_factors_come_back_with_their_users(data: Data, empty_place: Place) -> None:
+    new = NewPasskey("credential", "a public key", 7)
+    data.repository.add_user("anna", [Role.VIEWER], password=None, by=TESTS, now_ns=NOW_NS)
+    kept, _ = data.repository.add_passkey(
+        "anna", "blue key", new, most=1, codes=["a" * 64], keeps="", by=TESTS, now_ns=NOW_NS
+    )
+    assert data.repository.use_once("b" * 64, expires_ns=NOW_NS + 9, now_ns=NOW_NS)
+    data.back_up()
+    restore_backup(data.directory, empty_place)
+    engine = connect(empty_place.database_url)
+    again = Repository(engine)
+    assert again.passkeys("anna") == [kept]
+    assert again.recovery_codes_left("anna") == 1
+    assert not again.use_passkey(kept.id, 7, now_ns=NOW_NS), "the counter goes on where it was"
+    assert not again.use_once("b" * 64, expires_ns=NOW_NS + 9, now_ns=NOW_NS), "what was used stays used"
     engine.dispose()
 
 

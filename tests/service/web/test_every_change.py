@@ -83,6 +83,14 @@ FORMS: Changes = {
         lambda it: it.in_session("/account/recovery-codes", with_app=True, data=AGAIN),
         "recovery-codes-made",
     ),
+    "POST /account/passkeys": (
+        lambda it: it.with_passkey("/account/passkeys", data=AGAIN),
+        "second-factor-added",
+    ),
+    "POST /account/passkeys/{passkey_id}/removal": (
+        lambda it: it.with_passkey("/account/passkeys/{passkey_id}/removal", added=True, data=AGAIN),
+        "second-factor-removed",
+    ),
     "POST /account/second-factor/removal": (
         lambda it: it.in_session("/account/second-factor/removal", with_app=True, data=AGAIN),
         "second-factor-removed",

@@ -6,7 +6,14 @@ from sqlalchemy import delete, select
 from sqlalchemy.orm import Session
 
 from service.audit.actions import AuditAction
-from service.storage.models import ApiTokenRow, LoginLinkRow, RecoveryCodeRow, UserRow, UserSessionRow
+from service.storage.models import (
+    ApiTokenRow,
+    LoginLinkRow,
+    PasskeyRow,
+    RecoveryCodeRow,
+    UserRow,
+    UserSessionRow,
+)
 from service.storage.records import Actor, ApiToken
 from service.storage.repository.audit.entries import note_change
 
@@ -34,8 +41,9 @@ def end_all(session: Session, name: str, *, by: Actor, now_ns: int) -> None:
 
 
 def forget_second_factor(session: Session, row: UserRow) -> None:
-    """Forget the authenticator app of a user, and their recovery codes."""
+    """Forget the authenticator app of a user, their passkeys and their recovery codes."""
     row.totp = row.totp_pending = row.totp_step = row.second_factor_ns = None
+    session.execute(delete(PasskeyRow).where(PasskeyRow.user == row.name))
     session.execute(delete(RecoveryCodeRow).where(RecoveryCodeRow.user == row.name))
 
 

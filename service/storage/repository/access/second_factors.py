@@ -54,13 +54,8 @@ class SecondFactorRows(Sessions):
                 return False
             row.totp, row.totp_pending, row.totp_step = sealed, None, step
             row.second_factor_ns = now_ns
-            _replace_codes(session, user, codes)
-            session.execute(
-                delete(UserSessionRow).where(UserSessionRow.user == user, UserSessionRow.digest != keeps)
-            )
-            session.execute(
-                update(UserSessionRow).where(UserSessionRow.digest == keeps).values(second_factor=True)
-            )
+            replace_codes(session, user, codes)
+            end_other_sessions(session, user, keeps)
             note_change(
                 session,
                 by,
@@ -103,7 +98,7 @@ class SecondFactorRows(Sessions):
         """Give a user other codes, digests; the old ones count no more. Raises NotFoundError."""
         with self._write() as session:
             found(session, UserRow, user, KIND, lock=True)
-            _replace_codes(session, user, codes)
+            replace_codes(session, user, codes)
             note_change(session, by, AuditAction.RECOVERY_CODES_MADE, (KIND, user), now_ns=now_ns)
 
     def remove_second_factor(self, user: str, *, by: Actor, now_ns: int) -> None:
@@ -123,14 +118,21 @@ class SecondFactorRows(Sessions):
             if Role.SECAUD in row.roles.split():
                 require_owner(by, user, "the second factor")
             forget_second_factor(session, row)
-            _replace_codes(session, user, (code,))
+            replace_codes(session, user, (code,))
             end_all(session, user, by=by, now_ns=now_ns)
             note_change(session, by, AuditAction.SECOND_FACTOR_RESET, (KIND, user), now_ns=now_ns)
 
 
-def _replace_codes(session: Session, user: str, codes: Iterable[str]) -> None:
+def replace_codes(session: Session, user: str, codes: Iterable[str]) -> None:
+    """Give a user these codes, digests, in place of all others."""
     session.execute(delete(RecoveryCodeRow).where(RecoveryCodeRow.user == user))
     session.add_all(RecoveryCodeRow(digest=digest, user=user) for digest in codes)
+
+
+def end_other_sessions(session: Session, user: str, keeps: str) -> None:
+    """End all sessions of a user but the one of this digest, which has shown the second factor now."""
+    session.execute(delete(UserSessionRow).where(UserSessionRow.user == user, UserSessionRow.digest != keeps))
+    session.execute(update(UserSessionRow).where(UserSessionRow.digest == keeps).values(second_factor=True))
 
 
 def _number_of(user: str) -> Select[int]:

@@ -10,10 +10,7 @@ from service.storage.records import Actor, UserSession
 from service.storage.repository.access.ending import end_all
 from service.storage.repository.access.users import user_of
 from service.storage.repository.audit.entries import note_change
-from service.storage.repository.sessions import Sessions, found
-
-MOST_SESSIONS = 100
-"""A user has at most so many; the ones that were used longest ago end."""
+from service.storage.repository.sessions import Sessions, found, only
 
 
 class UserSessionRows(Sessions):
@@ -24,6 +21,8 @@ class UserSessionRows(Sessions):
         way: str,
         *,
         second_factor: bool = False,
+        provider_session: str | None = None,
+        most: int,
         oldest_ns: int,
         idle_since_ns: int,
         by: Actor,
@@ -31,7 +30,9 @@ class UserSessionRows(Sessions):
     ) -> None:
         """Note a login, and its way: "password", or an identity provider's address.
 
-        second_factor: whether more was shown than a password.
+        second_factor: whether more was shown than a password. provider_session: an identity provider, and
+        what it calls this login.
+        most: sessions of a user; those that were used longest ago end.
         Sessions that began before oldest_ns, or were last used before idle_since_ns, go.
 
         Raises NotFoundError (the user was deleted, or disabled, meanwhile).
@@ -44,7 +45,7 @@ class UserSessionRows(Sessions):
                 select(UserSessionRow.digest)
                 .where(UserSessionRow.user == user)
                 .order_by(UserSessionRow.used_ns.desc(), UserSessionRow.digest)
-                .offset(MOST_SESSIONS - 1)
+                .offset(most - 1)
             )
             surplus = session.scalars(latest).all()
             session.execute(delete(UserSessionRow).where(UserSessionRow.digest.in_(surplus)))
@@ -56,6 +57,7 @@ class UserSessionRows(Sessions):
                     created_ns=now_ns,
                     used_ns=now_ns,
                     second_factor=second_factor,
+                    provider_session=provider_session,
                 )
             )
 
@@ -102,6 +104,33 @@ class UserSessionRows(Sessions):
             row.sessions_ended_ns = now_ns
             end_all(session, user, by=by, now_ns=now_ns)
             note_change(session, by, AuditAction.SESSIONS_ENDED, ("user", user), now_ns=now_ns)
+
+    def end_at_provider(
+        self, subject: str | None, provider_session: str | None, *, by: Actor, now_ns: int
+    ) -> None:
+        """End what an identity provider has ended: one login, or all logins and tokens of a user.
+
+        Each is named as it was when it began, with the provider before it; None where the provider does not
+        name it. Harmless for what was never here, or has ended.
+        """
+        with self._write() as session:
+            logins = UserSessionRow.provider_session == provider_session
+            query = select(UserRow)
+            if subject is not None:
+                query = query.where(UserRow.subject == subject)
+            if provider_session is not None:
+                query = query.where(UserRow.name.in_(select(UserSessionRow.user).where(logins)))
+            row = only(session, query.order_by(UserRow.name).with_for_update())
+            if row is None:
+                return
+            if provider_session is None:
+                row.sessions_ended_ns = now_ns
+                end_all(session, row.name, by=by, now_ns=now_ns)
+                action = AuditAction.SESSIONS_ENDED
+            else:
+                session.execute(delete(UserSessionRow).where(UserSessionRow.user == row.name, logins))
+                action = AuditAction.LOGGED_OUT
+            note_change(session, by, action, ("user", row.name), now_ns=now_ns)
 
 
 def _note_login(session: Session, user: str, way: str, *, by: Actor, now_ns: int) -> None:

@@ -129,7 +129,7 @@ if (done !== null && !isRefusal(done)) {
 }
 sessionStorage.removeItem(SENT);
 
-function say(words) {
+export function say(words) {
   const place = document.getElementById("messages");
   if (place === null) return;
   const message = document.createElement("p");

@@ -22,7 +22,7 @@ MOTORS = "/api/v1/motors"
 TRIGGER = "/api/v1/motors/PUMP-A1/event-reports"
 NO_SUCH_ID = "00000000-0000-0000-0000-000000000000"
 PARAMETERS = ("recording_id", "diagnosis_id", "report_id", "note_id", "token_id", "alarm_id", "backup_id")
-OPEN = {"/healthz", "/readyz", "/api/v1/login"}
+OPEN = {"/healthz", "/readyz", "/api/v1/login", "/api/v1/login/passkey"}
 
 
 def requests_of(app: FastAPI) -> Iterator[tuple[str, str, str]]:

@@ -16,4 +16,11 @@ def test_every_route_declares_what_it_needs(context: ApiContext) -> None:
                 open_routes.add(route.path)
         except LookupError as error:
             raise AssertionError(f"{route.methods} {route.path}: {error}") from error
-    assert open_routes == {"/healthz", "/readyz", "/api/v1/login", "/login", "/login/link"}
+    assert open_routes == {
+        "/healthz",
+        "/readyz",
+        "/api/v1/login",
+        "/api/v1/login/passkey",
+        "/login",
+        "/login/link",
+    }

@@ -108,6 +108,18 @@ REQUESTS: Changes = {
         lambda it: it.in_session(f"{API}/account/recovery-codes", with_app=True, json=AGAIN),
         "recovery-codes-made",
     ),
+    "POST /api/v1/account/passkeys/options": (
+        lambda it: it.in_session(f"{API}/account/passkeys/options", json=AGAIN),
+        "second-factor-begun",
+    ),
+    "POST /api/v1/account/passkeys": (
+        lambda it: it.with_passkey(f"{API}/account/passkeys", json=AGAIN),
+        "second-factor-added",
+    ),
+    "POST /api/v1/account/passkeys/{passkey_id}/removal": (
+        lambda it: it.with_passkey(f"{API}/account/passkeys/{{passkey_id}}/removal", added=True, json=AGAIN),
+        "second-factor-removed",
+    ),
     "POST /api/v1/account/second-factor/removal": (
         lambda it: it.in_session(f"{API}/account/second-factor/removal", with_app=True, json=AGAIN),
         "second-factor-removed",

@@ -102,7 +102,14 @@ def test_users_with_sessions_locks_and_tokens(repository: Repository) -> None:
         repository.add_user(name, [Role.SECADM], password=None, by=ADMIN, now_ns=NOW_NS)
     for digest, at_ns in (("1" * 64, NOW_NS), ("2" * 64, NOW_NS + 10)):
         repository.begin_session(
-            digest, "ada", "password", oldest_ns=0, idle_since_ns=0, by=Actor("ada", "::1"), now_ns=at_ns
+            digest,
+            "ada",
+            "password",
+            most=100,
+            oldest_ns=0,
+            idle_since_ns=0,
+            by=Actor("ada", "::1"),
+            now_ns=at_ns,
         )
     repository.add_token(
         "bob", "program", "3" * 64, scope=None, expires_ns=None, by=Actor("bob", "::1"), now_ns=NOW_NS

@@ -55,7 +55,14 @@ def logged_in(url: str, repository: Repository, *roles: Role) -> httpx.Client:
     repository.add_user("kim", roles, password=None, by=BY, now_ns=time.time_ns())
     secret = new_session()
     repository.begin_session(
-        digest_of(secret), "kim", "tests", oldest_ns=0, idle_since_ns=0, by=BY, now_ns=time.time_ns()
+        digest_of(secret),
+        "kim",
+        "tests",
+        most=100,
+        oldest_ns=0,
+        idle_since_ns=0,
+        by=BY,
+        now_ns=time.time_ns(),
     )
     cookies = {NAME: secret}
     return httpx.Client(base_url=url, cookies=cookies, trust_env=False, timeout=LONGEST_S)

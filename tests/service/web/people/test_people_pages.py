@@ -23,7 +23,14 @@ def ada(repository: Repository) -> str:
         "ada", [Role.OPERATOR], password=None, full_name=HOSTILE, by=ADMIN, now_ns=NOW_NS - 10
     )
     repository.begin_session(
-        "1" * 64, "ada", "password", oldest_ns=0, idle_since_ns=0, by=Actor("ada", "10.0.0.7"), now_ns=NOW_NS
+        "1" * 64,
+        "ada",
+        "password",
+        most=100,
+        oldest_ns=0,
+        idle_since_ns=0,
+        by=Actor("ada", "10.0.0.7"),
+        now_ns=NOW_NS,
     )
     return "ada"
 
