@@ -28,7 +28,7 @@ _TIME = re.compile(
     r"(?i:rel(ative)?|abs(olute)?|elapsed|sample|sampling)?[ _-]?"
     r"(?i:time ?stamps?|times?|zeit(stempel)?|temps|tiempo|tempo|datetime|x[-_ ]?axis|x[-_ ]?value|t|"
     r"seconds?|secs?|milliseconds?|microseconds?)"
-    r"([ _/-]*[\[(]?(?P<unit>[A-Za-zµμ]+)[\])]?)?"
+    r"([ _/-]*(?:in )?[\[(]?(?P<unit>[A-Za-zµμ]+)[\])]?)?"
 )
 _NUMBER = re.compile(
     r"|n|nr|no|num|#|idx|index|row|points?|count(er)?|sequence|x|unnamed: ?0|__index_level_0__|"

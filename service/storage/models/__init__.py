@@ -35,6 +35,7 @@ from service.storage.models.record_figures import DETAILS, FIGURE_SUBJECTS, Reco
 from service.storage.models.recordings import (
     BaselineRecordingRow,
     BaselineRow,
+    OutlineRow,
     RecordingFileRow,
     RecordingRequestRow,
     RecordingRow,
@@ -90,6 +91,7 @@ __all__ = [
     "NotificationAlarmRow",
     "NotificationRow",
     "ObservationRow",
+    "OutlineRow",
     "QuarantineRow",
     "RecordFiguresRow",
     "RecordingFileRow",
