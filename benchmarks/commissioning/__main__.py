@@ -28,7 +28,7 @@ rated current counts as saturated there. A start of 3 s was to take 5 s: a secon
 that, 2.5 s of a 160 kW motor ten to 24. Five hundred motors were to be drawn, not 96.
 """
 SYMBOLS = ("R_s", "R_r", "L_ls", "L_s", "J")
-FEW, SOME, MANY = 4, 24, 96
+FEW, SOME, MANY = 4, 16, 96
 
 
 def kinds(pool: Executor, *, quick: bool) -> list[Section]:

@@ -17,8 +17,8 @@ import numpy as np
 from core.commissioning.errors import DivergenceError
 from core.commissioning.fit import COARSELY, CONVERGED, Fit, Records, every
 from core.commissioning.identifiability import Unidentifiable, compensating, condition_number, unidentifiable
-from core.commissioning.load_change import found_load_change, in_words
-from core.commissioning.model_choice import ROUGHLY, choose
+from core.commissioning.load_change import are_possible, found_load_change, in_words
+from core.commissioning.model_choice import ROUGHLY, Chosen, choose
 from core.commissioning.plausibility import contradictions, delay_warning
 from core.commissioning.prior import PARAMETERS, Prior, prior_of
 from core.commissioning.result import Commissioning, Estimate, StartFound
@@ -112,13 +112,13 @@ def commission(
     report(0.7, "choosing the law of the load")
     chosen = choose([thinned(one) for one in starts], prior, vector, load_law)
     report(0.8, "refining")
-    records = Records(starts, prior, chosen.law, changes=chosen.changes, load_changes=chosen.load_changes)
-    records, vector = _switched_on_again(records, chosen.fit.vector)
-    near = records.fit(vector, every(vector), converged=ROUGHLY if chosen.changes else COARSELY)
-    records, vector = _switched_on_again(records, near.vector)
-    spent = chosen.evaluations + near.evaluations
-    whole = records.fit(vector, every(vector), converged=COARSELY if chosen.changes else CONVERGED)
+    records, whole, spent = _refined(starts, prior, chosen)
     fit, fixed = _fit_identifiable(records, whole)
+    if chosen.steadily is not None and not are_possible(records, fit):
+        chosen = chosen.steadily
+        records, whole, more = _refined(starts, prior, chosen)
+        fit, fixed = _fit_identifiable(records, whole)
+        spent += more
     report(1.0, "done")
     return _result(
         records,
@@ -130,6 +130,17 @@ def commission(
         evaluations=evaluations + spent + records.evaluations,
         seconds=perf_counter() - begun,
     )
+
+
+def _refined(starts: list[Start], prior: Prior, chosen: Chosen) -> tuple[Records, Fit, int]:
+    """Return the starts and their fit as they were chosen, and what that took beside the last fit."""
+    records = Records(starts, prior, chosen.law, changes=chosen.changes, load_changes=chosen.load_changes)
+    records, vector = _switched_on_again(records, chosen.fit.vector)
+    near = records.fit(vector, every(vector), converged=ROUGHLY if chosen.changes else COARSELY)
+    records, vector = _switched_on_again(records, near.vector)
+    spent = chosen.evaluations + near.evaluations
+    whole = records.fit(vector, every(vector), converged=COARSELY if chosen.changes else CONVERGED)
+    return records, whole, spent
 
 
 def _found(starts: list[Start], prior: Prior, law: LoadLaw, report: Progress) -> tuple[Array, int]:

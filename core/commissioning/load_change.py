@@ -20,7 +20,7 @@ from core.commissioning.unknowns import (
 )
 from core.machines.base import Array
 
-INSTANTS: Final = 10
+INSTANTS: Final = 8
 LENGTHS: Final = (0.0, 0.125, 0.25, 0.5)
 """Of a step and of rises, over the part of the record that is compared."""
 LARGEST: Final = 0.8
@@ -29,6 +29,8 @@ SMALL: Final = 0.02
 """Change that is asked about, over the rated torque."""
 LEAST_LEFT: Final = 0.2
 """Share of the squared residuals that a change must explain to be tried."""
+LEAST_CHANGE: Final = 0.02
+"""A smaller change, over the rated torque, is not told."""
 LIKELY_LOAD: Final = 1.5
 """Load over the rated torque beyond which no motor is started: a fit went astray."""
 STEP_CYCLES: Final = 2.0
@@ -37,8 +39,8 @@ LEAST_EXPLAINED: Final = 1e-3
 """Share of the current that it must explain."""
 
 
-def begin_with_changes(records: Records, fit: Fit) -> tuple[list[Array], bool]:
-    """Return where fits with changing loads begin, and whether they are worth while.
+def is_seen(records: Records, fit: Fit) -> bool:
+    """Tell whether a step of the load would explain much of what a fit left; a rise is much like one.
 
     Parameters
     ----------
@@ -49,35 +51,58 @@ def begin_with_changes(records: Records, fit: Fit) -> tuple[list[Array], bool]:
 
     Returns
     -------
-    vectors : list of ndarray
-        Coordinates with the change of each load that fits best, of each of some lengths.
-    is_seen : bool
-        Whether one explains much of what the fit left.
+    bool
+        Whether one would, in any start.
     """
-    coordinates = records.coordinates
-    changing = with_load_changes(records)
-    begin = coordinates.first_of(0)
-    own = fit.vector[begin:].reshape(len(records.starts), len(OF_A_START))
-    trials = [_trials(start) for start in records.starts]
+    _, explained = _begun(records, fit, LENGTHS[0])
+    energies = [float((start.measured_ab**2).sum()) for start in records.starts]
+    left = [float((residual**2).sum()) for residual in fit.residuals]
+    return any(
+        gain > max(LEAST_LEFT * error, LEAST_EXPLAINED**2 * energy)
+        for gain, error, energy in zip(explained, left, energies, strict=True)
+    )
+
+
+def beginnings(records: Records, fit: Fit) -> list[Array]:
+    """Return where fits with changing loads begin.
+
+    Parameters
+    ----------
+    records : Records
+        The starts, whose loads do not change.
+    fit : Fit
+        Coordinates at their best.
+
+    Returns
+    -------
+    list of ndarray
+        Coordinates with the change of each load that fits best, of each of some lengths.
+    """
+    return [_begun(records, fit, length)[0] for length in LENGTHS]
+
+
+def _begun(records: Records, fit: Fit, length: float) -> tuple[Array, list[float]]:
+    """Return coordinates with the best change of a length, and what it explains in each start."""
+    coordinates, changing = records.coordinates, with_load_changes(records)
+    begin, count = coordinates.first_of(0), len(records.starts)
+    own = fit.vector[begin:].reshape(count, len(OF_A_START))
+    trials = [_trials(start, length) for start in records.starts]
     extended = [np.concatenate([mine, [0.0], one[0, 1:]]) for mine, one in zip(own, trials, strict=True)]
-    vectors = [np.concatenate([fit.vector[:begin], *extended]) for _ in LENGTHS]
-    is_seen = False
-    for k, start in enumerate(records.starts):
+    vector = np.concatenate([fit.vector[:begin], *extended])
+    gains = [0.0] * count
+    for k in range(count):
         of_load = changing.coordinates.first_of(k) + len(OF_A_START) + np.arange(len(OF_A_LOAD_CHANGE))
-        rows = np.tile(vectors[0], (1 + len(trials[k]), 1))
+        rows = np.tile(vector, (1 + len(trials[k]), 1))
         rows[1:, of_load] = trials[k]
         current = changing.currents(rows, k)
         if not np.isfinite(current).all():
             continue
-        entries = coordinates.of_record(k)
         slopes = (current[1:] - current[0]) / SMALL
-        change, explained = _best(slopes, fit.jacobians[k][entries], fit.residuals[k])
-        for n, vector in enumerate(vectors):
-            best = n + len(LENGTHS) * int(np.argmax(explained[n :: len(LENGTHS)]))
-            vector[of_load] = np.clip(change[best], -LARGEST, LARGEST), *trials[k][best][1:]
-        energy, left = float((start.measured_ab**2).sum()), float((fit.residuals[k] ** 2).sum())
-        is_seen |= float(explained.max()) > max(LEAST_LEFT * left, LEAST_EXPLAINED**2 * energy)
-    return vectors, is_seen
+        change, explained = _best(slopes, fit.jacobians[k][coordinates.of_record(k)], fit.residuals[k])
+        best = int(np.argmax(explained))
+        vector[of_load] = np.clip(change[best], -LARGEST, LARGEST), *trials[k][best][1:]
+        gains[k] = float(explained[best])
+    return vector, gains
 
 
 def are_possible(records: Records, fit: Fit) -> bool:
@@ -142,7 +167,8 @@ def found_load_change(start: Start, own: Array, half: Array) -> LoadChange | Non
         return None
     change, begins_s, lasts_s = own[len(OF_A_START) :].tolist()
     reach = float(half[len(OF_A_START)])
-    if abs(change) <= reach:
+    end_s = start.compared_s[1] - STEP_CYCLES * start.cycle_s
+    if abs(change) <= max(reach, LEAST_CHANGE) or begins_s > end_s:
         return None
     is_step = lasts_s < STEP_CYCLES * start.cycle_s
     if is_step:
@@ -175,12 +201,12 @@ def in_words(found: LoadChange) -> str:
     )
 
 
-def _trials(start: Start) -> Array:
-    """Return coordinates of a small change at some instants, as a step and as a rise, (trials, 3)."""
+def _trials(start: Start, share: float) -> Array:
+    """Return coordinates of a small change of one length at some instants, (instants, 3)."""
     cycles = start.compared_cycles
+    length = max(share * cycles, SHORTEST_CHANGE_CYCLES)
     instants = np.linspace(0.0, cycles, INSTANTS + 2)[1:-1]
-    lengths = [max(share * cycles, SHORTEST_CHANGE_CYCLES) for share in LENGTHS]
-    return np.array([(SMALL, max(at - length / 2.0, 0.0), length) for at in instants for length in lengths])
+    return np.array([(SMALL, max(at - length / 2.0, 0.0), length) for at in instants])
 
 
 def _best(slopes: Array, jacobian: Array, residual: Array) -> tuple[Array, Array]:

@@ -7,7 +7,7 @@ chosen among machines of the same kind, because a machine of the wrong kind take
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi
 from typing import Final
 
@@ -15,7 +15,7 @@ import numpy as np
 
 from core.commissioning.errors import DivergenceError
 from core.commissioning.fit import COARSELY, Fit, Records, every
-from core.commissioning.load_change import are_possible, begin_with_changes, with_load_changes
+from core.commissioning.load_change import are_possible, beginnings, is_seen, with_load_changes
 from core.commissioning.prior import Prior
 from core.commissioning.start import Start
 from core.commissioning.uncertainty import preference
@@ -54,6 +54,8 @@ class Chosen:
         Fit of the thinned records under them.
     evaluations : int
         What choosing took.
+    steadily : Chosen or None, optional
+        The choice among loads that do not change, where this one is of loads that do.
     """
 
     law: LoadLaw
@@ -62,6 +64,7 @@ class Chosen:
     load_changes: bool
     fit: Fit
     evaluations: int
+    steadily: "Chosen | None" = None
 
 
 def choose(starts: Sequence[Start], prior: Prior, vector: Array, wanted: LoadLaw | None) -> Chosen:
@@ -110,15 +113,13 @@ def _with_load_changes(plain: "Fits", fits: "Fits", found: Chosen, laws: Sequenc
 
     A motor that does not change may seem to, where its load does: both kinds are tried.
     """
-    if not begin_with_changes(*fits[found.law])[1]:
+    if not is_seen(*fits[found.law]):
         return None
     best: Chosen | None = None
     for kind in (plain, fits) if fits is not plain else (plain,):
         changing: Fits = {}
         for law, (records, fit) in kind.items():
-            begun = (
-                {law: (with_load_changes(records), vector)} for vector in begin_with_changes(records, fit)[0]
-            )
+            begun = ({law: (with_load_changes(records), vector)} for vector in beginnings(records, fit))
             tried = [one for each in begun for one in _fitted(each).values() if are_possible(*one)]
             if tried:
                 changing[law] = min(tried, key=lambda one: one[1].squared_error)
@@ -128,7 +129,7 @@ def _with_load_changes(plain: "Fits", fits: "Fits", found: Chosen, laws: Sequenc
         before = found if best is None else best
         if _is_better(changing[chosen.law][0], chosen.fit, before.fit):
             best = chosen
-    return best
+    return None if best is None else replace(best, steadily=found)
 
 
 Fits = dict[LoadLaw, tuple[Records, Fit]]

@@ -212,7 +212,7 @@ def misfit_covariance(records: Records, fit: Fit) -> Array:
     filling = np.zeros_like(bread)
     for start, residual, whole in zip(records.starts, fit.residuals, fit.jacobians, strict=True):
         jacobian = whole[fit.free].reshape(free, -1)
-        filling += misfit(start, residual) / free * (jacobian @ jacobian.T)
+        filling += misfit(start, residual) * (jacobian @ jacobian.T)
     return bread @ filling @ bread
 
 
