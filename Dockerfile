@@ -6,7 +6,8 @@ RUN python -m venv /opt/statorwatch
 WORKDIR /src
 # The libraries come first: they change seldom, and this layer is then kept.
 COPY requirements.txt ./
-# PostgreSQL's driver and the client of S3-compatible stores are among them, since an image cannot be added to.
+# PostgreSQL's driver, the client of S3-compatible stores and the readers of tables (Parquet, MATLAB 7.3, TDMS)
+# are among them, since an image cannot be added to.
 # A file whose hash is not in requirements.txt is not installed.
 RUN /opt/statorwatch/bin/pip install --require-hashes --requirement requirements.txt \
  # The client describes all of a cloud's services; stores of recordings are S3, and these say who asks.

@@ -124,7 +124,7 @@ fuzz: install
 
 lock: install
 	$(BIN)/python -m pip freeze --exclude-editable --exclude pip --exclude setuptools > constraints.txt
-	$(BIN)/uv pip compile pyproject.toml --extra postgres --extra s3 --constraint constraints.txt --python-version 3.11 \
+	$(BIN)/uv pip compile pyproject.toml --extra postgres --extra s3 --extra tables --constraint constraints.txt --python-version 3.11 \
 		--generate-hashes --no-header --no-annotate --quiet --output-file requirements.txt
 
 # Known advisories about the pinned packages, into a file. Needs a network; to be made for each release.

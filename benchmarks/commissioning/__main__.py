@@ -1,12 +1,13 @@
 """Parameters from starts of motors as they are built: python -m benchmarks.commissioning [--quick]."""
 
+from collections import Counter
 from collections.abc import Sequence
 from concurrent.futures import Executor
 from pathlib import Path
 
 import numpy as np
 
-from benchmarks.commissioning.motors import Outcome, drawn, of_issue, tried
+from benchmarks.commissioning.motors import Outcome, drawn, drawn_load, of_issue, tried
 from benchmarks.page_of_subjects import PageOfSubjects
 from benchmarks.reporting import Section, rate_text, spread, table
 from core.commissioning.prior import PARAMETERS
@@ -25,9 +26,12 @@ error of the model's speed at 0.3, 0.6 and 1.0 of rated torque.
 **Falls short.** The leakage is 1 % too small in the median: part of what the simulator's law takes away at
 rated current counts as saturated there. A start of 3 s was to take 5 s: a second of a 7.5 kW motor takes
 that, 2.5 s of a 160 kW motor ten to 24. Five hundred motors were to be drawn, not 96.
+Of 16 loads that step in, two are not told and one only as unexplained: deep bars take up a small step.
+A start under a load that changes takes about ten times as long; seconds of the loads were counted on a
+machine that did other work.
 """
 SYMBOLS = ("R_s", "R_r", "L_ls", "L_s", "J")
-FEW, MANY = 4, 96
+FEW, SOME, MANY = 4, 16, 96
 
 
 def kinds(pool: Executor, *, quick: bool) -> list[Section]:
@@ -70,6 +74,35 @@ def random(pool: Executor, *, quick: bool) -> list[Section]:
     return [_section("random", "Motors of any rating", lines)]
 
 
+def loads(pool: Executor, *, quick: bool) -> list[Section]:
+    """Loads that step in or rise during the start."""
+    count = FEW if quick else SOME
+    header = ("load", "parameter", "told", "error, median", "95 %", "interval holds")
+    rows, lines = [], []
+    for kind in ("constant", "step", "rise"):
+        cases = [drawn_load(seed, kind) for seed in range(count)]
+        outcomes = list(spread(tried, cases, f"load: {kind}", pool))
+        kept = [one for one in outcomes if not one.refused]
+        rows += [[kind, *_row(name, symbol, kept)] for name, symbol in zip(PARAMETERS, SYMBOLS, strict=True)]
+        counted = sorted(Counter(one.load_change or "nothing" for one in kept).items())
+        said = ", ".join(f"{word} {number}" for word, number in counted)
+        seconds = [one.seconds for one in kept]
+        lines.append(
+            f"- Load {kind}: {len(outcomes) - len(kept)} refused; said of the load: {said}; "
+            f"seconds: median {np.median(seconds):.1f}, longest {max(seconds):.1f}."
+        )
+    text = [
+        f"{count} motors of 0.8 to 160 kW, one in three with deep bars and saturation, each under three",
+        "loads: constant; with a step of 10 to 50 % of the rated torque at 10 to 70 % of the record; with a",
+        "rise of as much, over 10 to 80 % of the rest.",
+        "",
+        *table(header, rows),
+        "",
+        *lines,
+    ]
+    return [_section("loads", "Loads that change during the start", text)]
+
+
 def _row(name: str, symbol: str, outcomes: Sequence[Outcome]) -> list[str]:
     errors = [abs(error) for one in outcomes if (error := one.errors[name]) is not None]
     held = [one.held[name] for one in outcomes if name in one.held]
@@ -92,7 +125,7 @@ def _section(name: str, title: str, lines: Sequence[str]) -> Section:
     return Section(name, title, f"python -m benchmarks.commissioning --subject {name}", tuple(lines))
 
 
-SUBJECTS = {"kinds": kinds, "random": random}
+SUBJECTS = {"kinds": kinds, "random": random, "loads": loads}
 
 if __name__ == "__main__":
     PageOfSubjects(PAGE, PREAMBLE, SUBJECTS).measure(__doc__)

@@ -12,6 +12,7 @@ import numpy as np
 from core.commissioning.commissioning import commission
 from core.commissioning.errors import CommissioningError
 from core.commissioning.prior import PARAMETERS
+from core.commissioning.result import Commissioning
 from core.diagnosis.stator import diagnose
 from core.machines.deep_bars import DeepBars as Described
 from core.machines.parameters import Connection, MachineParameters, Motor, Nameplate
@@ -41,11 +42,16 @@ RUN_UP_SHARE = 1.6
 """Length of a record over the run-up with rated torque beyond the load's."""
 RUNNING_LOADS = (0.3, 0.6, 1.0)
 RATE_HZ = 5_000.0
+STEP_S = 0.001
+"""Time in which a load steps in."""
 
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """A motor, and what of it changes from a start to running. seed: of load and noise."""
+    """A motor, and what of it changes from a start to running. seed: of load and noise.
+
+    load_change: how the load changes during the start, as a StartRecord has it; None where it stays.
+    """
 
     name: str
     motor: Motor
@@ -54,6 +60,7 @@ class Case:
     load_level: float
     duration_s: float
     seed: int = 0
+    load_change: tuple[float, float, float] | None = None
 
     @property
     def saturation(self) -> LeakageSaturation:
@@ -69,6 +76,7 @@ class Outcome:
 
     errors: of each parameter, relative; None where it was not told.  held: whether the interval holds the
     truth.  speed_rpm: largest error of the speed of running records.  refused: why nothing was estimated.
+    load_change: what is said of the load: a step, a rise, "unexplained", or nothing.
     """
 
     case: Case
@@ -79,6 +87,7 @@ class Outcome:
     slip_share: float | None
     seconds: float
     refused: str = ""
+    load_change: str = ""
 
 
 def tried(case: Case) -> Outcome:
@@ -90,6 +99,7 @@ def tried(case: Case) -> Outcome:
         seed=case.seed,
         deep_bars=case.bars,
         leakage_saturation=case.saturation,
+        load_change=case.load_change,
     ).of(case.motor)
     try:
         found = commission([record], plate_of(case.motor))
@@ -106,7 +116,23 @@ def tried(case: Case) -> Outcome:
         if one.ci95 is not None:
             held[name] = one.ci95[0] <= truth <= one.ci95[1]
     rpm, share = _speed(case, found.motor)
-    return Outcome(case, errors, held, bool(found.change), rpm, share, found.compute_seconds)
+    return Outcome(
+        case,
+        errors,
+        held,
+        bool(found.change),
+        rpm,
+        share,
+        found.compute_seconds,
+        load_change=_of_load(found),
+    )
+
+
+def _of_load(found: Commissioning) -> str:
+    change = found.starts[0].load_change
+    if change is not None:
+        return "step" if change.is_step else "rise"
+    return "unexplained" if any("noise does not explain" in one for one in found.warnings) else ""
 
 
 def _speed(case: Case, known: Motor) -> tuple[float | None, float | None]:
@@ -169,22 +195,54 @@ def drawn(seed: int) -> Case:
         int(random.integers(1, 4)),
         Connection.STAR if medium or random.uniform() < 0.5 else Connection.DELTA,
     )
-    typical = typical_parameters(plate).parameters
-    factor = {name: exp(0.2 * random.normal()) for name in PARAMETERS}
-    machine = replace(
-        typical,
-        **{name: float(getattr(typical, name)) * factor[name] for name in PARAMETERS},
-        rotor_leakage_H=typical.rotor_leakage_H * factor["stator_leakage_H"],
-    )
+    machine = _machine(plate, random)
     level = float(random.uniform(0.05, 0.6))
-    synchronous = plate.rated_angular_frequency / plate.pole_pairs
-    run_up_s = machine.inertia_kgm2 * synchronous / plate.rated_torque_Nm
     return Case(
         f"{power_W / 1e3:.3g} kW",
         Motor("drawn", plate, machine),
         DeepBars(float(random.uniform(1.3, 5.0)), float(random.uniform(0.35, 0.85))),
         float(random.uniform(0.05, 0.45)),
         level,
-        float(np.clip(RUN_UP_SHARE * run_up_s, 0.6, 3.0)),
+        float(np.clip(RUN_UP_SHARE * _run_up_s(machine, plate), 0.6, 3.0)),
         seed,
     )
+
+
+def drawn_load(seed: int, kind: str) -> Case:
+    """Draw a motor of 0.8 to 160 kW, every third with deep bars, whose load steps, rises or stays."""
+    random = np.random.default_rng([seed, 45])
+    power_W = exp(random.uniform(log(800.0), log(160e3)))
+    plate = Nameplate(power_W, 400.0, 50.0, int(random.integers(1, 4)))
+    machine = _machine(plate, random)
+    level = float(random.uniform(0.05, 0.4))
+    duration_s = float(np.clip(RUN_UP_SHARE * _run_up_s(machine, plate), 0.6, 1.5))
+    change, at = float(random.uniform(0.1, 0.5)), float(random.uniform(0.1, 0.7))
+    lasts_s = float(random.uniform(0.1, 0.8)) * (1.0 - at) * duration_s
+    has_bars = seed % 3 == 2
+    return Case(
+        f"{power_W / 1e3:.3g} kW",
+        Motor("drawn", plate, machine),
+        DeepBars(float(random.uniform(1.3, 3.0)), float(random.uniform(0.35, 0.85))) if has_bars else None,
+        float(random.uniform(0.05, 0.45)) if has_bars else 0.0,
+        level,
+        duration_s,
+        seed,
+        None if kind == "constant" else (change, at * duration_s, STEP_S if kind == "step" else lasts_s),
+    )
+
+
+def _machine(plate: Nameplate, random: np.random.Generator) -> MachineParameters:
+    """Draw parameters about those typical of the rating."""
+    typical = typical_parameters(plate).parameters
+    factor = {name: exp(0.2 * random.normal()) for name in PARAMETERS}
+    return replace(
+        typical,
+        **{name: float(getattr(typical, name)) * factor[name] for name in PARAMETERS},
+        rotor_leakage_H=typical.rotor_leakage_H * factor["stator_leakage_H"],
+    )
+
+
+def _run_up_s(machine: MachineParameters, plate: Nameplate) -> float:
+    """Return how long a start with the rated torque takes."""
+    synchronous = plate.rated_angular_frequency / plate.pole_pairs
+    return machine.inertia_kgm2 * synchronous / plate.rated_torque_Nm

@@ -2213,6 +2213,7 @@ class ListedRecording(TypedDict):
     duration_s: float | None
     pre_trigger_s: float | None
     parts: list[str] | None
+    copy_of: str | None
     announced_time: str
     fetched_time: str | None
     recorded_time: str | None
@@ -2474,6 +2475,7 @@ class Recording(TypedDict):
     operation_remark: why the motor's parameters cannot be estimated from this start.
     duration_s: its length; pre_trigger_s: how much of it is before the trigger; null before it was read.
     parts: the recordings that it was joined from (source joined); null of others.
+    copy_of: the recording of the same event, with values as fine or finer, that counts in its place.
     That time is the relay's; `clock_...` is the latest comparison of its clock when the recording was stored,
     null where that was not made within an hour of it.
     """
@@ -2495,6 +2497,7 @@ class Recording(TypedDict):
     duration_s: float | None
     pre_trigger_s: float | None
     parts: list[str] | None
+    copy_of: str | None
     announced_time: str
     fetched_time: str | None
     recorded_time: str | None
@@ -3021,6 +3024,8 @@ class PageTrendPoint(TypedDict):
 class RecordingDetails(TypedDict):
     """
     A recording with its files and its latest diagnosis.
+
+    copies: recordings of the same event in whose place it counts.
     """
 
     clock_offset_s: float | None
@@ -3040,9 +3045,11 @@ class RecordingDetails(TypedDict):
     duration_s: float | None
     pre_trigger_s: float | None
     parts: list[str] | None
+    copy_of: str | None
     announced_time: str
     fetched_time: str | None
     recorded_time: str | None
+    copies: list[str]
     files: list[RecordingFile]
     diagnosis: Diagnosis | None
 

@@ -6,10 +6,10 @@ unknowns that the records do not identify are fixed and named in the result, and
 more.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import astuple
-from math import exp, isinf, log
+from math import exp, isinf, log, sqrt
 from time import perf_counter
 
 import numpy as np
@@ -17,7 +17,8 @@ import numpy as np
 from core.commissioning.errors import DivergenceError
 from core.commissioning.fit import COARSELY, CONVERGED, Fit, Records, every
 from core.commissioning.identifiability import Unidentifiable, compensating, condition_number, unidentifiable
-from core.commissioning.model_choice import ROUGHLY, choose
+from core.commissioning.load_change import are_possible, found_load_change, in_words
+from core.commissioning.model_choice import ROUGHLY, Chosen, choose
 from core.commissioning.plausibility import contradictions, delay_warning
 from core.commissioning.prior import PARAMETERS, Prior, prior_of
 from core.commissioning.result import Commissioning, Estimate, StartFound
@@ -25,7 +26,13 @@ from core.commissioning.search import search
 from core.commissioning.start import Start, thinned
 from core.commissioning.start_detection import start_of
 from core.commissioning.stepped_commissioning import commission_stepped
-from core.commissioning.uncertainty import inherited_covariance, noise_covariance, quantile
+from core.commissioning.uncertainty import (
+    inherited_covariance,
+    misfit,
+    misfit_covariance,
+    noise_covariance,
+    quantile,
+)
 from core.commissioning.unknowns import LOGARITHMS, OF_A_CHANGE, OF_A_START, USUAL_CHANGE, Point
 from core.machines.base import Array
 from core.machines.candidates import LoadLaw
@@ -39,6 +46,9 @@ LIGHT_LOAD = 0.05
 """Load level below which the load law makes no difference."""
 USUAL_RESIDUAL = 0.05
 """Unexplained share of the current above which a motor of constant parameters does not fit the record."""
+
+USUAL_MISFIT = 0.003
+"""Share of the current that motors as they are built leave beside a model of them, and noise."""
 
 Progress = Callable[[float, str], None]
 
@@ -102,13 +112,13 @@ def commission(
     report(0.7, "choosing the law of the load")
     chosen = choose([thinned(one) for one in starts], prior, vector, load_law)
     report(0.8, "refining")
-    records = Records(starts, prior, chosen.law, changes=chosen.changes)
-    records, vector = _switched_on_again(records, chosen.fit.vector)
-    near = records.fit(vector, every(vector), converged=ROUGHLY if chosen.changes else COARSELY)
-    records, vector = _switched_on_again(records, near.vector)
-    spent = chosen.evaluations + near.evaluations
-    whole = records.fit(vector, every(vector), converged=COARSELY if chosen.changes else CONVERGED)
+    records, whole, spent = _refined(starts, prior, chosen)
     fit, fixed = _fit_identifiable(records, whole)
+    if chosen.steadily is not None and not are_possible(records, fit):
+        chosen = chosen.steadily
+        records, whole, more = _refined(starts, prior, chosen)
+        fit, fixed = _fit_identifiable(records, whole)
+        spent += more
     report(1.0, "done")
     return _result(
         records,
@@ -120,6 +130,17 @@ def commission(
         evaluations=evaluations + spent + records.evaluations,
         seconds=perf_counter() - begun,
     )
+
+
+def _refined(starts: list[Start], prior: Prior, chosen: Chosen) -> tuple[Records, Fit, int]:
+    """Return the starts and their fit as they were chosen, and what that took beside the last fit."""
+    records = Records(starts, prior, chosen.law, changes=chosen.changes, load_changes=chosen.load_changes)
+    records, vector = _switched_on_again(records, chosen.fit.vector)
+    near = records.fit(vector, every(vector), converged=ROUGHLY if chosen.changes else COARSELY)
+    records, vector = _switched_on_again(records, near.vector)
+    spent = chosen.evaluations + near.evaluations
+    whole = records.fit(vector, every(vector), converged=COARSELY if chosen.changes else CONVERGED)
+    return records, whole, spent
 
 
 def _found(starts: list[Start], prior: Prior, law: LoadLaw, report: Progress) -> tuple[Array, int]:
@@ -153,11 +174,17 @@ def _switched_on_again(records: Records, vector: Array) -> tuple[Records, Array]
     starts, own = [], point.starts.copy()
     for k, start in enumerate(records.starts):
         offset = float(own[k, 1])
-        again = start.switched_on_again(own[k, 2:], offset) if start.begins_with_the_start else start
-        own[k, 2:] = again.switching_flux(np.array([offset]))[0]
+        again = start.switched_on_again(own[k, 2:4], offset) if start.begins_with_the_start else start
+        own[k, 2:4] = again.switching_flux(np.array([offset]))[0]
         starts.append(again)
-    changes = records.coordinates.changes
-    moved = Records(starts, records.coordinates.prior, records.load_law, changes=changes)
+    coordinates = records.coordinates
+    moved = Records(
+        starts,
+        coordinates.prior,
+        records.load_law,
+        changes=coordinates.changes,
+        load_changes=coordinates.load_changes,
+    )
     return moved, moved.coordinates.vector(Point(point.machine, own, point.change))
 
 
@@ -210,7 +237,11 @@ def _result(
     point = coordinates.point(fit.vector)
     half = np.zeros(fit.vector.size)
     half[fit.free] = quantile(records, fit) * np.sqrt(
-        np.diag(noise_covariance(records, fit) + inherited_covariance(records, fit))
+        np.diag(
+            noise_covariance(records, fit)
+            + inherited_covariance(records, fit)
+            + misfit_covariance(records, fit)
+        )
     )
     why = {one.name: _why(one, prior) for one in fixed}
 
@@ -258,7 +289,7 @@ def _result(
         reasons=tuple(
             _reasons(estimates, found, prior, law_identified=law_identified, changes=coordinates.changes)
         ),
-        warnings=tuple(_warnings(motor, estimates, found, records)),
+        warnings=tuple(_warnings(motor, estimates, found, records, fit.residuals)),
         evaluations=evaluations,
         compute_seconds=seconds,
     )
@@ -282,7 +313,11 @@ def _change(point: Point, half: Array, why: dict[str, str]) -> dict[str, Estimat
 
 
 def _warnings(
-    motor: Motor, estimates: dict[str, Estimate], found: Sequence[StartFound], records: Records
+    motor: Motor,
+    estimates: dict[str, Estimate],
+    found: Sequence[StartFound],
+    records: Records,
+    residuals: Sequence[Array],
 ) -> list[str]:
     delays = [
         delay_warning(start, one.time_offset_s.value)
@@ -290,7 +325,27 @@ def _warnings(
         if one.time_offset_s.fixed is None
     ]
     unusual = contradictions(motor, estimates, found, records.coordinates.prior)
-    return [*unusual, *(one for one in delays if one is not None)]
+    loads = [f"{one.record}: {in_words(one.load_change)}" for one in found if one.load_change is not None]
+    return [
+        *loads,
+        *_unexplained(found, records.starts, residuals),
+        *unusual,
+        *(one for one in delays if one is not None),
+    ]
+
+
+def _unexplained(
+    found: Sequence[StartFound], starts: Sequence[Start], residuals: Sequence[Array]
+) -> Iterator[str]:
+    """Yield a warning for each start of which the model leaves more than noise would."""
+    for one, start, residual in zip(found, starts, residuals, strict=True):
+        share = sqrt(misfit(start, residual) / float((start.measured_ab**2).sum()))
+        if share > USUAL_MISFIT:
+            yield (
+                f"{one.record}: {share:.1%} of the current is left that noise does not explain: load or "
+                "supply changed in another way than by one step or rise; the intervals allow for as much, "
+                "and a start under a load that stays tells more"
+            )
 
 
 def _start_found(
@@ -312,6 +367,7 @@ def _start_found(
         time_offset_s=estimate(1, start.cycle_s),
         residual_rms_A=rms * start.line_per_winding_current,
         residual_share=rms / measured,
+        load_change=found_load_change(start, own, half),
     )
 
 

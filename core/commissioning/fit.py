@@ -74,15 +74,23 @@ class Records:
         How the load torque grows with speed.
     changes : bool, default False
         Whether the motor changes from a start to running: deep bars, leakage that saturates.
+    load_changes : bool, default False
+        Whether the load changes during the starts.
     """
 
     def __init__(
-        self, starts: Sequence[Start], prior: Prior, load_law: LoadLaw, *, changes: bool = False
+        self,
+        starts: Sequence[Start],
+        prior: Prior,
+        load_law: LoadLaw,
+        *,
+        changes: bool = False,
+        load_changes: bool = False,
     ) -> None:
         self.starts = tuple(starts)
         self.load_law = load_law
-        self.coordinates = Coordinates(prior, self.starts, changes)
-        self._playbacks = [start.playback(load_law, changes=changes) for start in starts]
+        self.coordinates = Coordinates(prior, self.starts, changes, load_changes)
+        self._playbacks = [start.playback(load_law, varies=changes or load_changes) for start in starts]
         self.evaluations = 0
 
     def squared_errors(self, vectors: Array) -> Array:
@@ -137,7 +145,7 @@ class Records:
             for n, entry in enumerate(entries):
                 rows[1 + 2 * n, entry] = min(vector[entry] + STEP, upper[entry])
                 rows[2 + 2 * n, entry] = max(vector[entry] - STEP, lower[entry])
-            current = self._currents(rows, k)
+            current = self.currents(rows, k)
             if not np.isfinite(current).all():
                 raise DivergenceError(", ".join(one.source for one in self.starts))
             steps = np.array([rows[1 + 2 * n, e] - rows[2 + 2 * n, e] for n, e in enumerate(entries)])
@@ -208,7 +216,21 @@ class Records:
         residuals, jacobians = self.linearise(vector, np.ones_like(free))
         return Fit(vector, free, tuple(residuals), tuple(jacobians), self.evaluations - begun)
 
-    def _currents(self, vectors: Array, record: int) -> Array:
+    def currents(self, vectors: Array, record: int) -> Array:
+        """Return the modelled currents of one record.
+
+        Parameters
+        ----------
+        vectors : ndarray, shape (candidates, entries)
+            Coordinates of each candidate.
+        record : int
+            Number of the record, from 0.
+
+        Returns
+        -------
+        ndarray, shape (candidates, 2, compared)
+            Winding currents on Clarke axes [A].
+        """
         self.evaluations += len(vectors)
         return self._playbacks[record].trajectories(self.coordinates.candidates(vectors, record)).current
 

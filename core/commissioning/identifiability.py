@@ -7,7 +7,7 @@ is one current phasor (thesis 5.3.3).
 """
 
 from dataclasses import dataclass, replace
-from math import log
+from math import inf, log
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from core.commissioning.uncertainty import (
     inherited_covariance,
     noise_covariance,
 )
-from core.commissioning.unknowns import LOAD_LEVEL, OF_A_CHANGE, TIME_OFFSET
+from core.commissioning.unknowns import LOAD_LEVEL, OF_A_CHANGE, OF_A_LOAD_CHANGE, TIME_OFFSET
 from core.machines.base import Array
 
 WIDEST_SHARE = 0.3
@@ -160,6 +160,8 @@ def _limit(name: str) -> float:
         return WIDEST_SHARE
     if kind in OF_A_CHANGE:
         return WIDEST_CHANGE
+    if kind in OF_A_LOAD_CHANGE:
+        return inf  # there is nothing that they could be fixed at, and nobody uses them
     return WIDEST_CYCLES if kind == TIME_OFFSET else WIDEST_FLUX
 
 

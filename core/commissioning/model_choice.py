@@ -7,7 +7,7 @@ chosen among machines of the same kind, because a machine of the wrong kind take
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi
 from typing import Final
 
@@ -15,6 +15,7 @@ import numpy as np
 
 from core.commissioning.errors import DivergenceError
 from core.commissioning.fit import COARSELY, Fit, Records, every
+from core.commissioning.load_change import are_possible, beginnings, is_seen, with_load_changes
 from core.commissioning.prior import Prior
 from core.commissioning.start import Start
 from core.commissioning.uncertainty import preference
@@ -47,17 +48,23 @@ class Chosen:
         grows without bound under it.
     changes : bool
         Whether the motor changes from a start to running.
+    load_changes : bool
+        Whether the load changes during a start.
     fit : Fit
         Fit of the thinned records under them.
     evaluations : int
         What choosing took.
+    steadily : Chosen or None, optional
+        The choice among loads that do not change, where this one is of loads that do.
     """
 
     law: LoadLaw
     law_identified: bool
     changes: bool
+    load_changes: bool
     fit: Fit
     evaluations: int
+    steadily: "Chosen | None" = None
 
 
 def choose(starts: Sequence[Start], prior: Prior, vector: Array, wanted: LoadLaw | None) -> Chosen:
@@ -94,9 +101,35 @@ def choose(starts: Sequence[Start], prior: Prior, vector: Array, wanted: LoadLaw
         records = Records(starts, prior, law, changes=True)
         changing[law] = records, records.coordinates.changing(fit.vector, np.array(USUAL_CHANGE))
     first = _fitted({found.law: changing.pop(found.law)})
-    if not first or not _is_better(*first[found.law], found.fit):
-        return found
-    return _chosen(first | _fitted(changing), laws)
+    fits = plain
+    if first and _is_better(*first[found.law], found.fit):
+        fits = first | _fitted(changing)
+        found = _chosen(fits, laws)
+    return _with_load_changes(plain, fits, found, laws) or found
+
+
+def _with_load_changes(plain: "Fits", fits: "Fits", found: Chosen, laws: Sequence[LoadLaw]) -> Chosen | None:
+    """Return the choice among loads that change during the start; None where none is seen.
+
+    A motor that does not change may seem to, where its load does: both kinds are tried.
+    """
+    if not is_seen(*fits[found.law]):
+        return None
+    best: Chosen | None = None
+    for kind in (plain, fits) if fits is not plain else (plain,):
+        changing: Fits = {}
+        for law, (records, fit) in kind.items():
+            begun = ({law: (with_load_changes(records), vector)} for vector in beginnings(records, fit))
+            tried = [one for each in begun for one in _fitted(each).values() if are_possible(*one)]
+            if tried:
+                changing[law] = min(tried, key=lambda one: one[1].squared_error)
+        if not changing:
+            continue
+        chosen = _chosen(changing, laws)
+        before = found if best is None else best
+        if _is_better(changing[chosen.law][0], chosen.fit, before.fit):
+            best = chosen
+    return None if best is None else replace(best, steadily=found)
 
 
 Fits = dict[LoadLaw, tuple[Records, Fit]]
@@ -139,4 +172,11 @@ def _chosen(fits: Fits, laws: Sequence[LoadLaw]) -> Chosen:
     )
     law = best if identified or LoadLaw.CONSTANT not in fits else LoadLaw.CONSTANT
     spent = sum(one.evaluations for _, one in fits.values())
-    return Chosen(law, identified, changes=records.coordinates.changes, fit=fits[law][1], evaluations=spent)
+    return Chosen(
+        law,
+        identified,
+        changes=records.coordinates.changes,
+        load_changes=records.coordinates.load_changes,
+        fit=fits[law][1],
+        evaluations=spent,
+    )

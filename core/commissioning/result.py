@@ -27,6 +27,28 @@ class Estimate:
 
 
 @dataclass(frozen=True, slots=True)
+class LoadChange:
+    """How the load changed during a start.
+
+    Parameters
+    ----------
+    change : Estimate
+        By how much, over the rated torque.
+    begins_s : float
+        From when on after the motor was switched on [s].
+    lasts_s : float
+        How long [s].
+    is_step : bool
+        Whether it changed faster than the record shows.
+    """
+
+    change: Estimate
+    begins_s: float
+    lasts_s: float
+    is_step: bool
+
+
+@dataclass(frozen=True, slots=True)
 class StartFound:
     """What was found of one start.
 
@@ -39,13 +61,15 @@ class StartFound:
     compared_s : tuple of float
         Part of the record that was compared [s].
     load_level : Estimate
-        Load torque over rated torque.
+        Load torque over rated torque; before it changed, where it did.
     time_offset_s : Estimate
         Delay of the currents against the voltages [s].
     residual_rms_A : float
         Line current that the model leaves, rms [A].
     residual_share : float
         Its share of the measured rms.
+    load_change : LoadChange or None, optional
+        How the load changed during the start; None where no change is seen.
     """
 
     record: str
@@ -55,6 +79,7 @@ class StartFound:
     time_offset_s: Estimate
     residual_rms_A: float
     residual_share: float
+    load_change: LoadChange | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,6 +163,7 @@ class Commissioning:
                     "time_offset_s_ci95": _interval(start.time_offset_s.ci95),
                     "residual_rms_A": start.residual_rms_A,
                     "residual_share": start.residual_share,
+                    "load_change": _load_change(start.load_change),
                 }
                 for start in self.starts
             ],
@@ -151,6 +177,18 @@ class Commissioning:
 
 def _estimate(one: Estimate) -> dict[str, object]:
     return {"value": one.value, "ci95": _interval(one.ci95), "fixed": one.fixed}
+
+
+def _load_change(one: LoadChange | None) -> dict[str, object] | None:
+    if one is None:
+        return None
+    return {
+        "change": one.change.value,
+        "change_ci95": _interval(one.change.ci95),
+        "begins_s": one.begins_s,
+        "lasts_s": one.lasts_s,
+        "kind": "step" if one.is_step else "rise",
+    }
 
 
 def _interval(interval: Interval | None) -> list[float] | None:

@@ -84,6 +84,11 @@ class Start:
         return min(round(self.switched_on_s / self.supply.step_s), self.compared[0] * self.supply.substeps)
 
     @property
+    def compared_cycles(self) -> float:
+        """Cycles of the supply from the switching to the last compared sample."""
+        return self.compared_s[1] / self.cycle_s
+
+    @property
     def compared_s(self) -> tuple[float, float]:
         """The compared part, after the switching [s]."""
         first, last = self.compared
@@ -152,22 +157,22 @@ class Start:
         plate = self.nameplate
         return plate.rated_power_W / (3.0 * plate.winding_voltage_V * EFFICIENCY_POWER_FACTOR)
 
-    def playback(self, load_law: LoadLaw, *, changes: bool = False) -> StartPlayback:
+    def playback(self, load_law: LoadLaw, *, varies: bool = False) -> StartPlayback:
         """Return the start's voltages, for any machine.
 
         Parameters
         ----------
         load_law : LoadLaw
             How the load torque grows with speed.
-        changes : bool, default False
-            Whether the machines change from a start to running: deep bars, leakage that saturates.
+        varies : bool, default False
+            Whether machines change from a start to running (deep bars, leakage that saturates), or loads do.
 
         Returns
         -------
         StartPlayback
             The voltages to be played through machines.
         """
-        kind = DeepBarStartPlayback if changes else StartPlayback
+        kind = DeepBarStartPlayback if varies else StartPlayback
         return kind(self.nameplate, self.supply, self.first_column, self.compared, load_law)
 
     def switching_flux(self, time_offset_s: Array) -> Array:

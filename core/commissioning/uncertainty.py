@@ -15,6 +15,7 @@ from scipy.ndimage import uniform_filter1d
 from scipy.stats import t as student_t
 
 from core.commissioning.fit import Fit, Records
+from core.commissioning.start import Start
 from core.machines.base import Array
 
 CONFIDENCE = 0.95
@@ -23,6 +24,12 @@ FEWEST_BINS = 3
 """Least number of bins on either side of a frequency over which the spectrum is averaged."""
 LEAST_INFORMATION = 1e-14
 """Share of the largest eigenvalue of the information below which an eigenvalue is rounding error."""
+MISFIT_CYCLES, BESIDE_CYCLES = 0.3, 0.9
+"""Distances from the supply's frequency, over it, within which errors of the model are, and noise alone."""
+MEDIAN_OF_POWER = 0.84
+"""Median over mean of the power of noise in two channels at a frequency: of chi squared with four degrees."""
+MOST_OF_NOISE = 3.0
+"""Power that noise may have near the supply's frequency, over that beside it: noise of voltages is uneven."""
 COHERENT_ERROR = 0.005
 """Error of model and channels that repeats every cycle, as a share of the current."""
 
@@ -180,6 +187,57 @@ def coherent_covariance(records: Records, fit: Fit) -> Array:
         error = COHERENT_ERROR**2 * float(np.mean(start.measured_ab**2))
         filling += error * start.sample_rate_hz * start.cycle_s * (jacobian @ jacobian.T)
     return bread @ filling @ bread
+
+
+def misfit_covariance(records: Records, fit: Fit) -> Array:
+    """Return the covariance of the free entries from what the model leaves of the currents beyond noise.
+
+    An error of the model changes slowly beside the supply, so that it stands near the supply's frequency, and
+    noise does not. What of it the unknowns took up is not seen; as much is taken for each of them as is left.
+
+    Parameters
+    ----------
+    records : Records
+        Starts of one motor and how a point in the coordinates explains them.
+    fit : Fit
+        Coordinates at their best.
+
+    Returns
+    -------
+    ndarray, shape (free, free)
+        The covariance.
+    """
+    bread = information_inverse(fit)
+    free = int(fit.free.sum())
+    filling = np.zeros_like(bread)
+    for start, residual, whole in zip(records.starts, fit.residuals, fit.jacobians, strict=True):
+        jacobian = whole[fit.free].reshape(free, -1)
+        filling += misfit(start, residual) * (jacobian @ jacobian.T)
+    return bread @ filling @ bread
+
+
+def misfit(start: Start, residual: Array) -> float:
+    """Return what the model leaves of the currents beyond noise, near the supply's frequency.
+
+    Parameters
+    ----------
+    start : Start
+        The start.
+    residual : ndarray, shape (2, compared)
+        What the model leaves of its currents [A].
+
+    Returns
+    -------
+    float
+        Its sum of squares [A^2].
+    """
+    n = residual.shape[1]
+    power = (np.abs(np.fft.rfft(residual, axis=1)) ** 2).sum(axis=0) * _sides(n) / n
+    away = np.abs(np.fft.rfftfreq(n, 1.0 / start.sample_rate_hz) - start.frequency_hz)
+    near = away <= MISFIT_CYCLES * start.frequency_hz
+    beside = ~near & (away <= BESIDE_CYCLES * start.frequency_hz)
+    noise = float(np.median(power[beside])) / MEDIAN_OF_POWER
+    return max(float(power[near].sum()) - MOST_OF_NOISE * noise * float(near.sum()), 0.0)
 
 
 def quantile(records: Records, fit: Fit) -> float:

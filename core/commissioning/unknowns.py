@@ -3,6 +3,7 @@
 A fit works on coordinates of order one: the logarithm of a parameter, the load level, T_d in cycles, the
 switching flux over the rated one. Of a motor that changes from a start to running, there are five more: by
 how much resistance and leakage of the rotor do, and share, knee and sharpness of the leakage that saturates.
+Where the load changes during a start, each start has three more: by how much, from when on and how long.
 """
 
 from dataclasses import dataclass, replace
@@ -22,6 +23,12 @@ LOAD_LEVEL, TIME_OFFSET = "load_level", "time_offset_s"
 SWITCHING_FLUX = ("switching_flux_alpha_Vs", "switching_flux_beta_Vs")
 OF_A_START = (LOAD_LEVEL, TIME_OFFSET, *SWITCHING_FLUX)
 """Each record's own."""
+LOAD_CHANGE = "load_change"
+OF_A_LOAD_CHANGE = (LOAD_CHANGE, "change_begins_s", "change_lasts_s")
+"""Each record's own, beside those, where the load changes during the start."""
+LARGEST_LOAD_CHANGE = 2.0
+SHORTEST_CHANGE_CYCLES = 0.5
+"""A load that changes faster is a step: the speed, which follows the integral, does not show it."""
 KNEE_SHARPNESS = "knee_sharpness"
 OF_A_CHANGE = ("resistance_ratio", "leakage_share", "saturating_share", "knee_current_A", KNEE_SHARPNESS)
 """Of a motor that changes from a start to running."""
@@ -54,8 +61,9 @@ class Point:
     ----------
     machine : MachineParameters
         The shared parameters.
-    starts : ndarray, shape (records, 4)
-        LL, T_d [s] and the flux [V s] of each record.
+    starts : ndarray, shape (records, 4) or (records, 7)
+        LL, T_d [s] and the flux [V s] of each record; with how its load changes, by how much, from when on
+        and how long [s].
     change : tuple of DeepBars and LeakageSaturation, or None, optional
         How it changes from a start to running.
     """
@@ -77,7 +85,7 @@ class Point:
         StartCandidates
             The batch.
         """
-        load, offset, *flux = self.starts[record].tolist()
+        load, offset, *flux = self.starts[record, : len(OF_A_START)].tolist()
         machine = self.machine
         return StartCandidates(
             np.array([machine.stator_resistance_ohm]),
@@ -104,16 +112,24 @@ class Coordinates:
         The starts.
     changes : bool, default False
         Whether the motor changes from a start to running.
+    load_changes : bool, default False
+        Whether the load changes during the starts.
     """
 
     prior: Prior
     starts: tuple[Start, ...]
     changes: bool = False
+    load_changes: bool = False
 
     @property
     def shared(self) -> tuple[str, ...]:
         """Names of the entries that all records share."""
         return (*PARAMETERS, *OF_A_CHANGE) if self.changes else PARAMETERS
+
+    @property
+    def own(self) -> tuple[str, ...]:
+        """Names of the entries that each record has."""
+        return (*OF_A_START, *OF_A_LOAD_CHANGE) if self.load_changes else OF_A_START
 
     @property
     def usual_knee_A(self) -> float:
@@ -123,7 +139,7 @@ class Coordinates:
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the vector's entries; those of a record carry its number, from 0."""
-        own = (f"{name}[{k}]" for k in range(len(self.starts)) for name in OF_A_START)
+        own = (f"{name}[{k}]" for k in range(len(self.starts)) for name in self.own)
         return (*self.shared, *own)
 
     def of_record(self, record: int) -> list[int]:
@@ -140,7 +156,7 @@ class Coordinates:
             Indices of the entries.
         """
         first = self.first_of(record)
-        return [*range(len(self.shared)), *range(first, first + len(OF_A_START))]
+        return [*range(len(self.shared)), *range(first, first + len(self.own))]
 
     def first_of(self, record: int) -> int:
         """Return the index of a record's first own entry.
@@ -155,7 +171,7 @@ class Coordinates:
         int
             Its index.
         """
-        return len(self.shared) + record * len(OF_A_START)
+        return len(self.shared) + record * len(self.own)
 
     def changing(self, vector: Array, change: Array) -> Array:
         """Return the vector of a motor that changes, from that of one which does not.
@@ -213,7 +229,7 @@ class Coordinates:
             The point.
         """
         count = len(PARAMETERS)
-        own = vector[len(self.shared) :].reshape(len(self.starts), len(OF_A_START))
+        own = vector[len(self.shared) :].reshape(len(self.starts), len(self.own))
         units = np.array([self._units(start) for start in self.starts])
         values = dict(zip(PARAMETERS, np.exp(vector[:count]).tolist(), strict=True))
         expected = self.prior.expected
@@ -247,13 +263,15 @@ class Coordinates:
         expected, count = self.prior.expected, len(PARAMETERS)
         shared = {name: getattr(expected, name) * np.exp(vectors[:, k]) for k, name in enumerate(PARAMETERS)}
         first = self.first_of(record)
-        own = vectors[:, first : first + len(OF_A_START)] * self._units(self.starts[record])
+        own = vectors[:, first : first + len(self.own)] * self._units(self.starts[record])
         shared["rotor_leakage_H"] = shared["stator_leakage_H"] * self.prior.leakage_ratio
         shared["load_level"] = np.ascontiguousarray(own[:, 0])
         shared["time_offset_s"] = np.ascontiguousarray(own[:, 1])
-        shared["switching_flux_Vs"] = np.ascontiguousarray(own[:, 2:])
+        shared["switching_flux_Vs"] = np.ascontiguousarray(own[:, 2:4])
+        if self.load_changes:
+            shared |= zip(OF_A_LOAD_CHANGE, own[:, 4:].T, strict=True)
         if not self.changes:
-            return StartCandidates(**shared)
+            return self._unchanging(shared) if self.load_changes else StartCandidates(**shared)
         ratio, share, saturating, knee, sharpness = vectors[:, count : len(self.shared)].T
         return DeepBarCandidates(
             **shared,
@@ -281,6 +299,10 @@ class Coordinates:
             earliest, latest = (offset / start.cycle_s for offset in start.offset_range_s)
             lower += [LOWEST_LOAD, earliest, -HIGHEST_FLUX, -HIGHEST_FLUX]
             upper += [HIGHEST_LOAD, latest, HIGHEST_FLUX, HIGHEST_FLUX]
+            if self.load_changes:
+                cycles = start.compared_cycles
+                lower += [-LARGEST_LOAD_CHANGE, 0.0, SHORTEST_CHANGE_CYCLES]
+                upper += [LARGEST_LOAD_CHANGE, cycles, max(cycles, 2.0 * SHORTEST_CHANGE_CYCLES)]
         return np.array(lower), np.array(upper)
 
     def doubts(self) -> Array:
@@ -294,8 +316,21 @@ class Coordinates:
         shared = [self.prior.doubt[name] for name in PARAMETERS]
         if self.changes:
             shared += DOUBT_OF_CHANGE
-        return np.array(shared + [DOUBT_OF_LOAD, DOUBT_OF_OFFSET, 0.0, 0.0] * len(self.starts))
+        own = [DOUBT_OF_LOAD, DOUBT_OF_OFFSET, 0.0, 0.0]
+        return np.array(shared + [*own, *([0.0] * (len(self.own) - len(own)))] * len(self.starts))
 
-    @staticmethod
-    def _units(start: Start) -> Array:
-        return np.array([1.0, start.cycle_s, start.rated_flux_Vs, start.rated_flux_Vs])
+    def _units(self, start: Start) -> Array:
+        own = [1.0, start.cycle_s, start.rated_flux_Vs, start.rated_flux_Vs]
+        return np.array([*own, 1.0, start.cycle_s, start.cycle_s] if self.load_changes else own)
+
+    def _unchanging(self, shared: dict[str, Array]) -> DeepBarCandidates:
+        """Return machines of one rotor loop and constant leakage in the form of those that change."""
+        one = np.ones(1)
+        return DeepBarCandidates(
+            **shared,
+            resistance_ratio=one,
+            leakage_share=one,
+            saturating_share=np.zeros(1),
+            knee_current_A=self.usual_knee_A * one,
+            knee_sharpness=USUAL_SHARPNESS * one,
+        )

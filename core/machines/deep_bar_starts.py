@@ -9,11 +9,12 @@ order on Clarke axes, with the voltage at the middle of each step too:
     d(psi_i)/dt = -R_i i_i + j w psi_i                psi_i = psi_o + L_i i_i
     dw/dt = p^2/J (L_m Im(i_r* i_s) - T_load / p)     psi_s = f L_ls i_s + L_m (i_s + i_r)
 
-with i_r = i_o + i_i and f = f(|i_s|).
+with i_r = i_o + i_i and f = f(|i_s|). The load may change once, along a straight line: only here does it
+depend on time.
 """
 
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, field
+from functools import cached_property, partial
 from math import sqrt
 from typing import NamedTuple
 
@@ -44,6 +45,10 @@ class DeepBarCandidates(StartCandidates):
         Of `deep_bars.DeepBars`; the parameters are those at a small slip and at running currents.
     saturating_share, knee_current_A, knee_sharpness : ndarray, shape (candidates,)
         Of `deep_bars.LeakageSaturation`.
+    load_change : ndarray, shape (candidates,)
+        By how much the load level changes, once; 0 where it stays.
+    change_begins_s, change_lasts_s : ndarray, shape (candidates,)
+        From when on after the playback's begin, and how long [s].
     """
 
     resistance_ratio: Array
@@ -51,6 +56,9 @@ class DeepBarCandidates(StartCandidates):
     saturating_share: Array
     knee_current_A: Array
     knee_sharpness: Array
+    load_change: Array = field(default_factory=partial(np.zeros, 1))
+    change_begins_s: Array = field(default_factory=partial(np.zeros, 1))
+    change_lasts_s: Array = field(default_factory=partial(np.ones, 1))
 
 
 class Loops(NamedTuple):
@@ -73,7 +81,11 @@ class Loops(NamedTuple):
     gain : float
         p^2 / J [1/(kg m^2)].
     load, law : float
-        T_load / p = load w^law.
+        T_load / p = load w^law, up to a change of the load.
+    change : float
+        What is added to `load` when the change is over.
+    begins, lasts : float
+        Begin and length of the change [columns].
     """
 
     R_s: float
@@ -88,6 +100,9 @@ class Loops(NamedTuple):
     gain: float
     load: float
     law: int
+    change: float
+    begins: float
+    lasts: float
 
 
 State = tuple[float, float, float, float, float, float, float]
@@ -124,12 +139,16 @@ def _currents(it: Loops, state: State, length: float) -> tuple[float, float, flo
 
 
 @compiled
-def _rates(it: Loops, v_a: float, v_b: float, state: State, length: float) -> tuple[State, float]:
+def _rates(
+    it: Loops, v_a: float, v_b: float, state: State, length: float, column: float
+) -> tuple[State, float]:
     """Return the rates of a state and the length of its stator current."""
     _, _, o_a, o_b, n_a, n_b, w = state
     s_a, s_b, r_a, r_b = _currents(it, state, length)
     i_a, i_b = it.inverse_L_i * (n_a - o_a), it.inverse_L_i * (n_b - o_b)
     demand = it.load
+    if it.change != 0.0 and column > it.begins:
+        demand += it.change * min((column - it.begins) / it.lasts, 1.0)
     for _ in range(it.law):
         demand *= w
     rates = (
@@ -164,10 +183,11 @@ def _run(
         length, speed[n] = sqrt(current[0, n] ** 2 + current[1, n] ** 2), x[6]
         if n == speed.size - 1:
             break
-        k1, length = _rates(it, voltage[n, 0], voltage[n, 1], x, length)
-        k2, length = _rates(it, between[n, 0], between[n, 1], _ahead(x, k1, half), length)
-        k3, length = _rates(it, between[n, 0], between[n, 1], _ahead(x, k2, half), length)
-        k4, length = _rates(it, voltage[n + 1, 0], voltage[n + 1, 1], _ahead(x, k3, step_s), length)
+        k1, length = _rates(it, voltage[n, 0], voltage[n, 1], x, length, n)
+        k2, length = _rates(it, between[n, 0], between[n, 1], _ahead(x, k1, half), length, n + 0.5)
+        k3, length = _rates(it, between[n, 0], between[n, 1], _ahead(x, k2, half), length, n + 0.5)
+        ahead = _ahead(x, k3, step_s)
+        k4, length = _rates(it, voltage[n + 1, 0], voltage[n + 1, 1], ahead, length, n + 1.0)
         x = _ahead(_ahead(x, k1, half / 3.0), k2, step_s / 3.0)
         x = _ahead(_ahead(x, k3, step_s / 3.0), k4, half / 3.0)
 
@@ -186,7 +206,9 @@ def _play(
             delay_voltage(voltage, delay_columns[c] - 0.5, first, between)
         r = loops[c]
         left = _tabled(r[8], r[9])
-        it = Loops(r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], left, r[10], r[11], law)
+        it = Loops(
+            r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], left, r[10], r[11], law, r[12], r[13], r[14]
+        )
         _run(it, delayed, between, flux[c], step_s, current[c], speed[c])
 
 
@@ -232,23 +254,29 @@ class DeepBarStartPlayback(StartPlayback):
         return sampled
 
     def _loops(self, it: DeepBarCandidates) -> Array:
-        """Return a row of `Loops` for each candidate, without the law."""
+        """Return a row of `Loops` for each candidate, without the law. With a ratio of 1, R_i is left out."""
         ratio, share = it.resistance_ratio, it.leakage_share
+        has_inner = ratio > 1.0
         outer = ratio * it.rotor_resistance_ohm
-        inner = outer / (ratio - 1.0)
+        inner = outer / np.where(has_inner, ratio - 1.0, 1.0)
         carried = outer / (outer + inner)
+        between = np.where(has_inner, (1.0 - share) * it.rotor_leakage_H, 1.0)
+        step_s = self._feed.step_s
         columns = (
             it.stator_resistance_ohm,
             outer,
             inner,
             it.stator_leakage_H,
             share * it.rotor_leakage_H,
-            carried**2 / ((1.0 - share) * it.rotor_leakage_H),
+            np.where(has_inner, carried**2 / between, 0.0),
             MAGNETISING_OVER_SELF * it.stator_self_inductance_H,
             it.knee_current_A / RMS_OVER_CLARKE,
             it.saturating_share,
             it.knee_sharpness,
             self.nameplate.pole_pairs**2 / it.inertia_kgm2,
             it.load_level * self._torque_per_pole_pair,
+            it.load_change * self._torque_per_pole_pair,
+            it.change_begins_s / step_s,
+            it.change_lasts_s / step_s,
         )
-        return np.ascontiguousarray(np.stack(columns, axis=1))
+        return np.ascontiguousarray(np.stack(np.broadcast_arrays(*columns), axis=1))

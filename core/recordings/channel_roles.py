@@ -14,10 +14,13 @@ from core.recordings.waveform import REVERSED_LINES, Quantity
 _SI_UNITS = {
     "A": ("A", 1.0), "a": ("A", 1.0), "mA": ("A", 1e-3), "kA": ("A", 1e3), "KA": ("A", 1e3), "ka": ("A", 1e3),
     "V": ("V", 1.0), "v": ("V", 1.0), "mV": ("V", 1e-3), "kV": ("V", 1e3), "KV": ("V", 1e3), "kv": ("V", 1e3),
-    "MV": ("V", 1e6), "Amps": ("A", 1.0), "Volts": ("V", 1.0),
+    "MV": ("V", 1e6),
     "А": ("A", 1.0), "мА": ("A", 1e-3), "кА": ("A", 1e3),
     "В": ("V", 1.0), "мВ": ("V", 1e-3), "кВ": ("V", 1e3),
+    "À": ("A", 1.0), "ìÀ": ("A", 1e-3), "êÀ": ("A", 1e3),  # the same of CP1251, where nothing else tells it
+    "Â": ("V", 1.0), "ìÂ": ("V", 1e-3), "êÂ": ("V", 1e3),
 }  # fmt: skip
+_UNIT_WORD = re.compile(r"(?P<prefix>[mkM]?)(?P<letter>[AaVv])(?i:(?<=a)mp(?:ere)?s?|(?<=v)olts?)")
 _CYRILLIC_PHASES = str.maketrans("АВСавс", "ABCabc")
 """Letters of Cyrillic keyboards that look like those of the phases."""
 
@@ -44,6 +47,20 @@ _NAME = re.compile(
     r"(?:[-_]?[NGEnge])?"  # against neutral or ground
     r"(?![A-Za-z0-9])"
 )
+_CURRENT_WORD = r"(?:currents?|strom|courant|corriente|corrente)"
+_VOLTAGE_WORD = r"(?:voltages?|spannung|tension|tensi[oó]n|tens[aã]o)"
+_ONE_PHASE = r"(?:[A-CR-WY]|L?[1-3])"
+_PLAIN = (
+    (re.compile(rf"(?i)\b(?:phase|ph)[ _-]*({_ONE_PHASE})[ _-]+{_CURRENT_WORD}\b"), r"I\1"),
+    (re.compile(rf"(?i)\b(?:phase|ph)[ _-]*({_ONE_PHASE})[ _-]+{_VOLTAGE_WORD}\b"), r"V\1"),
+    (re.compile(rf"(?i)\b{_CURRENT_WORD}(?![A-Za-z]{{2}})"), "I"),
+    (re.compile(rf"(?i)\b{_VOLTAGE_WORD}(?![A-Za-z]{{2}})"), "V"),
+    (re.compile(rf"(?i)[ _(-]*\b(?:phase|ph)[ _-]*(?={_ONE_PHASE}\b)"), " "),
+    (re.compile(rf"(?<![A-Za-z0-9])([IUV]) *\((?={_ONE_PHASE}-(?:{_ONE_PHASE}|[NGE])\))"), r"\1"),
+    (re.compile(r"(?<![A-Za-z0-9])([IUV])[ _-]+(?=(?:[A-CR-TYabc]|L?[1-3])[^ ])"), r"\1"),
+    (re.compile(rf"(?<![A-Za-z0-9])([IUV])[ _-]+(?={_ONE_PHASE}(?![A-Za-z0-9]))"), r"\1"),
+)
+"""Words for I and V, and what people write between them and the phase: "Current phase A" is "IA"."""
 _AGAINST_EARTH = re.compile(r"(L[1-3]|[A-Z])[NGE]")
 
 
@@ -133,8 +150,9 @@ class _Seen:
 
     @classmethod
     def of(cls, name: str, phase_field: str, unit: str) -> "_Seen":
-        si_unit, scale = _SI_UNITS.get(unit, (unit, 1.0))
-        match = _NAME.search(name.translate(_CYRILLIC_PHASES))
+        word = _UNIT_WORD.fullmatch(unit.strip())
+        si_unit, scale = _SI_UNITS.get(word["prefix"] + word["letter"].upper() if word else unit, (unit, 1.0))
+        match = _NAME.search(_plain(name).translate(_CYRILLIC_PHASES))
         if match is None or (match["kind"] in "Ii") != (si_unit == "A"):
             kind, code, terminal = "", "", ""
         else:
@@ -151,6 +169,13 @@ class _Seen:
     @property
     def codes(self) -> tuple[str, str]:
         return ("", "") if self.is_derived else (self.name_code, self.field_code)
+
+
+def _plain(name: str) -> str:
+    """Return a name with I and V in place of the words for them, and nothing between them and the phase."""
+    for pattern, short in _PLAIN:
+        name = pattern.sub(short, name.replace("_", " ") if short in ("I", "V") else name)
+    return name
 
 
 def _lettered(codes: Sequence[str], *, alone: bool = False) -> Mapping[str, str]:

@@ -3,11 +3,12 @@
 import re
 from enum import IntEnum
 from pathlib import Path
+from typing import Final
 
-_READ = 1 << 18
-_COMTRADE = (".cfg", ".cff")
-_BINARY = re.compile(rb"\bBINARY(32)?\b", re.IGNORECASE)
-_FLOAT = re.compile(rb"\bFLOAT32\b", re.IGNORECASE)
+_READ: Final = 1 << 18
+_COMTRADE: Final = (".cfg", ".cff")
+_TEXT: Final = (".cev", ".csv", ".tsv", ".txt")
+_FORMAT: Final = re.compile(rb'^[\s"]*(ASCII|BINARY|BINARY32|FLOAT32)[\s",]*$', re.IGNORECASE | re.MULTILINE)
 
 
 class Fidelity(IntEnum):
@@ -36,10 +37,13 @@ def fidelity_of(path: Path) -> Fidelity:
     OSError
         If the file cannot be read.
     """
-    if path.suffix.casefold() not in _COMTRADE:
+    suffix = path.suffix.casefold()
+    if suffix in _TEXT:
         return Fidelity.TEXT
+    if suffix not in _COMTRADE:
+        return Fidelity.FLOAT  # tables of numbers
     with path.open("rb") as file:
         head = file.read(_READ).replace(b"\0", b"")  # UTF-16 has a zero beside each letter
-    if _FLOAT.search(head):
-        return Fidelity.FLOAT
-    return Fidelity.BINARY if _BINARY.search(head) else Fidelity.TEXT
+    named = _FORMAT.search(head.replace(b"\r", b"\n"))
+    kinds = {b"FLOAT32": Fidelity.FLOAT, b"BINARY": Fidelity.BINARY, b"BINARY32": Fidelity.BINARY}
+    return Fidelity.TEXT if named is None else kinds.get(named[1].upper(), Fidelity.TEXT)

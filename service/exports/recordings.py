@@ -46,6 +46,7 @@ TABLE: Table[JudgedRecording] = Table(
             lambda row: row.entry.operation_remark,
         ),
         text("reason", "why it was refused, or does not count", lambda row: row.entry.reason),
+        text("copy_of", "recording of the same event that counts instead", lambda row: row.entry.copy_of),
         text("ied", "relay that made it", lambda row: row.entry.ied),
         text("source", "relay, upload or joined", lambda row: row.entry.source),
         text("name", "name of its files without the suffix", lambda row: row.entry.name),

@@ -23,16 +23,22 @@ def keep_diagnosed(
     time_zone: of the relay's clock (IANA); None for UTC.  Raises SQLAlchemyError, UnstorableDiagnosisError.
     """
     job, now_ns = claimed.job, time.time_ns()
-    findings, left_out = made.findings, None
+    findings, outline, left_out = made.findings, made.outline, None
     if claimed.is_joined:  # the recordings that it is made of tell the condition
-        findings = replace(findings, observation=None)
+        findings, outline = replace(findings, observation=None), None
     try:
         require_possible_time(made.recorded_ns, now_ns)
     except ImpossibleTimeError as error:
         findings, left_out = replace(findings, observation=None, start=None), str(error)
         log.warning("record left out of the condition", recording=job.recording_id, reason=left_out)
     kept = repository.finish_job(
-        job.id, findings, recorded_ns=made.recorded_ns, now_ns=now_ns, runner=runner, left_out=left_out
+        job.id,
+        findings,
+        recorded_ns=made.recorded_ns,
+        now_ns=now_ns,
+        runner=runner,
+        left_out=left_out,
+        outline=outline,
     )
     if not kept:
         log.warning("a diagnosis came after the lease was lost", recording=job.recording_id)

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from core.condition.copies import Outline
 from core.findings.findings import Findings
 from core.machines.parameters import Motor
 from service.recording_store.recording import Source
@@ -31,12 +32,13 @@ class Diagnosed:
     """Hold what a record tells of its motor, and the time at which it was made.
 
     recorded_ns: trigger time written in the record, UTC [ns].  has_time_code: whether the record tells how
-    far its times are ahead of UTC.
+    far its times are ahead of UTC.  outline: what tells copies of its event; None where it cannot have any.
     """
 
     findings: Findings
     recorded_ns: int
     has_time_code: bool = False
+    outline: Outline | None = None
 
 
 @dataclass(frozen=True, slots=True)

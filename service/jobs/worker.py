@@ -14,6 +14,7 @@ from core.machines.parameters import Motor
 from core.machines.table_layout import layout_of
 from core.operation import Operation
 from core.recordings import Recording, RecordingError, read
+from core.recordings.fidelity import fidelity_of
 from core.recordings.local_time import in_utc
 from service.condition.healthy_records import MOST_VALUES, learnt
 from service.jobs.task import Diagnosed, DiagnosisTask, Outcome, Rejected
@@ -37,11 +38,12 @@ def diagnose_recording(task: DiagnosisTask) -> Outcome:
 
     Raises OSError where it cannot be had for now.
     """
+    from core.condition.copies import outline_of
     from core.findings.examining import examine
 
     try:
         with task.recording.opened() as entry:
-            motor = task.motor
+            motor, fidelity = task.motor, fidelity_of(entry)
             recording = read(
                 entry, lenient=motor.reads_leniently, most_values=MOST_VALUES, layout=layout_of(motor)
             )
@@ -63,7 +65,8 @@ def diagnose_recording(task: DiagnosisTask) -> Outcome:
             start=_measured(recording, motor),
             not_commissioned_from=_why_not_commissioned_from(recording, motor),
         )
-    return Diagnosed(found, recorded_ns, recording.has_time_code)
+    outline = outline_of(recording, motor, fidelity)
+    return Diagnosed(found, recorded_ns, recording.has_time_code, outline)
 
 
 def _why_not_commissioned_from(recording: Recording, motor: Motor) -> str | None:

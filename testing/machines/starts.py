@@ -13,7 +13,7 @@ from core.machines.parameters import ChannelNames, Limits, MachineParameters, Mo
 from core.machines.sensors import SensorClass
 from core.recordings import Channel, Quantity, Recording
 from ied_sim.motor.deep_bars import UNSATURATED, DeepBars, LeakageSaturation
-from ied_sim.motor.load import Load
+from ied_sim.motor.load import Load, LoadCycle
 from ied_sim.motor.plant import MotorPlant
 from ied_sim.motor.sensors import Sensors
 from ied_sim.motor.supply import Supply
@@ -22,6 +22,8 @@ Array = NDArray[np.float64]
 
 TRUE_RATE_HZ = 20_000.0
 """Of the simulated currents, which are interpolated where the channels sample them."""
+PERIOD_S = 1_000.0
+"""Time within which a load that changes has its level: longer than any record."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +36,7 @@ class StartRecord:
     voltage: over the rated one.  unbalance: V2/V1.
     broken_bars: broken share of the cage's bars.  resistances: of stator and rotor over the parameters'.
     deep_bars, leakage_saturation: what a start shows of the motor beside its parameters.
+    load_change: by how much the load level changes, from when on after the switching on, and how long [s].
     """
 
     load_level: float = 0.5
@@ -54,6 +57,17 @@ class StartRecord:
     resistances: tuple[float, float] = (1.0, 1.0)
     deep_bars: DeepBars | None = None
     leakage_saturation: LeakageSaturation = UNSATURATED
+    load_change: tuple[float, float, float] | None = None
+
+    @property
+    def load(self) -> Load:
+        """What the motor drives."""
+        if self.load_change is None:
+            return Load(self.load_level)
+        change, begins_s, lasts_s = self.load_change
+        begin_s, after = self.switched_at_s + begins_s, self.load_level + change
+        points = ((0.0, self.load_level), (begin_s, self.load_level), (begin_s + lasts_s, after))
+        return Load(self.load_level, cycle=LoadCycle((*points, (PERIOD_S, after)), 2.0 * PERIOD_S))
 
     def of(self, motor: Motor) -> Recording:
         """The recording: IA IB IC and three phase or two line voltages."""
@@ -71,7 +85,7 @@ class StartRecord:
             rotor_resistance_ohm=rotor * motor.parameters.rotor_resistance_ohm,
         )
         plant = MotorPlant(
-            turning, supply, Load(self.load_level), Sensors(1.0, 1.0), broken_bars=self.broken_bars,
+            turning, supply, self.load, Sensors(1.0, 1.0), broken_bars=self.broken_bars,
             deep_bars=self.deep_bars, leakage_saturation=self.leakage_saturation,
         )  # fmt: skip
         true = plant.start_up(self.switched_at_s, self.duration_s, TRUE_RATE_HZ)

@@ -31,7 +31,7 @@ def test_the_image_has_the_versions_that_tests_ran_with() -> None:
 def test_the_image_has_all_that_the_service_needs() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     extras = project["optional-dependencies"]
-    needed = names_of([*project["dependencies"], *extras["postgres"], *extras["s3"]])
+    needed = names_of([*project["dependencies"], *extras["postgres"], *extras["s3"], *extras["tables"]])
     assert len(needed) > 20
     assert needed - {pin.name for pin in INSTALLED} == set()
 

@@ -5,7 +5,6 @@ clear name without a unit is taken as amperes or volts, and says so: whether tha
 nameplate.
 """
 
-import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -26,13 +25,6 @@ SAME_RATE = 0.01
 PHASES = {"a": 0, "b": 1, "c": 2, "ab": 0, "bc": 1, "ca": 2}
 UNITS = {Quantity.CURRENT: "A", Quantity.PHASE_VOLTAGE: "V", Quantity.LINE_VOLTAGE: "V"}
 PLACE = "[tables] of the motor's file"
-_WORDS = (
-    (re.compile(r"(?i)\b(currents?|strom|courant|corriente|corrente)(?![A-Za-z]{2})"), "I"),
-    (re.compile(r"(?i)\b(voltages?|spannung|tension|tensi[oó]n|tens[aã]o)(?![A-Za-z]{2})"), "V"),
-    (re.compile(r"(?i)\b(phase|ph)[ _-]*(?=[A-CRSTUVW1-3]\b)"), ""),
-    (re.compile(r"(?<=[IV])[ _-]+(?=[A-CLRSTa-c1-3])"), ""),
-)
-"""Words for I and V, and what people write between them and the phase."""
 
 
 def read_table_recording(
@@ -104,9 +96,9 @@ def _rate_hz(path: Path, table: Table, given_hz: float | None) -> float:
 def _roles(table: Table, layout: TableLayout) -> list[tuple[ChannelRole, bool]]:
     """Return the role of each column, and whether its unit was assumed."""
     named = {column: key for key, column in layout.columns}
-    told = channel_roles([(_plain(c.name), "", c.unit) for c in table.columns])
-    as_amperes = channel_roles([(_plain(c.name), "", c.unit or "A") for c in table.columns])
-    as_volts = channel_roles([(_plain(c.name), "", c.unit or "V") for c in table.columns])
+    told = channel_roles([(c.name, "", c.unit) for c in table.columns])
+    as_amperes = channel_roles([(c.name, "", c.unit or "A") for c in table.columns])
+    as_volts = channel_roles([(c.name, "", c.unit or "V") for c in table.columns])
     roles = []
     for column, *by_unit in zip(table.columns, told, as_amperes, as_volts, strict=True):
         key = named.get(column.name)
@@ -126,13 +118,6 @@ def _named_role(column: Column, key: str, by_unit: ChannelRole) -> tuple[Channel
     quantity = Quantity.CURRENT if key[0] == "i" else voltage
     unit = by_unit.unit if column.unit else UNITS[quantity]
     return replace(by_unit, quantity=quantity, phase=phase, unit=unit), not column.unit
-
-
-def _plain(name: str) -> str:
-    """Return a name with I and V in place of the words for them: "Current phase A [A]" is "IA [A]"."""
-    for pattern, short in _WORDS:
-        name = pattern.sub(short, name.replace("_", " ") if short else name)
-    return name.replace(" [", "  [")
 
 
 def _channel(

@@ -11,13 +11,13 @@ What is decided here, where there is no standard:
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from core.recordings.errors import RecordingError
+from core.recordings.errors import RecordingError, quoted
 from core.recordings.tables.dates import instants, is_date
 from core.recordings.tables.table import Column, Table
 from core.recordings.tables.text_lines import Body, Dialect, find_body, is_missing, lines_of
@@ -49,6 +49,7 @@ _UNITS = _WORDS.union(
     ("va", "kva", "var", "kvar", "°c", "c", "k", "%", "deg", "rad", "g", "m/s", "m/s²", "m/s2", "mm/s"),
     ("count", "counts", "adc"),
 )
+MOST_LINES_BEHIND = 20
 _BESIDE_NAME = re.compile(r".*\S\s*[\[(](?P<unit>[^\[\]()]*)[\])]|.*\S\s*/\s*(?P<behind>[munkµμM]?[sAV])")
 _IN_BRACKETS = re.compile(r"[\[(](.*)[\])]")
 _INTERVAL = re.compile(
@@ -84,14 +85,27 @@ def read_text_table(path: Path) -> Table:
     OSError
         If it cannot be read.
     """
-    body = find_body(path, lines_of(path.read_bytes()))
+    body, notes = _without_words_behind(find_body(path, lines_of(path.read_bytes())))
     head = _head(body)
     columns = [
         Column(head.names[place], head.units[place], values, dates_ns, is_time)
         for place, (values, dates_ns, is_time) in enumerate(_columns(path, body))
         if is_time or not np.isnan(values).all()
     ]
-    return table_of(path, renamed(columns), sample_rate_hz=_rate_hz(body))
+    return table_of(path, renamed(columns), sample_rate_hz=_rate_hz(body), notes=notes)
+
+
+def _without_words_behind(body: Body) -> tuple[Body, tuple[str, ...]]:
+    """Leave out the last lines that have words and no numbers, which loggers put behind the samples."""
+    lines, behind = list(body.lines), ""
+    while len(lines) > body.first and len(body.lines) - len(lines) <= MOST_LINES_BEHIND:
+        cells = body.dialect.cells(lines[-1])
+        if len(cells) == body.width or any(map(body.dialect.is_number, cells)):
+            break
+        behind = lines.pop().strip() or behind
+    if not behind:
+        return body, ()
+    return replace(body, lines=lines), (f"what is behind the samples is passed over: {quoted(behind)}",)
 
 
 @dataclass(frozen=True, slots=True)
@@ -210,7 +224,7 @@ def _rate_hz(body: Body) -> float | None:
         above += [body.dialect.cells(line) for line in body.lines[body.first : body.first + 20]]
     for number, cells in enumerate(above):
         for place, cell in enumerate(cells):
-            key, _, inside = cell.partition(":")
+            key, _, inside = cell.lstrip(" #%;*").replace("=", ":", 1).partition(":")
             key, unit = _key_and_unit(key)
             if not (_INTERVAL.fullmatch(key) or _RATE.fullmatch(key)):
                 continue

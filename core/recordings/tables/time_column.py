@@ -28,7 +28,7 @@ _TIME = re.compile(
     r"(?i:rel(ative)?|abs(olute)?|elapsed|sample|sampling)?[ _-]?"
     r"(?i:time ?stamps?|times?|zeit(stempel)?|temps|tiempo|tempo|datetime|x[-_ ]?axis|x[-_ ]?value|t|"
     r"seconds?|secs?|milliseconds?|microseconds?)"
-    r"([ _/-]*[\[(]?(?P<unit>[A-Za-zµμ]+)[\])]?)?"
+    r"([ _/-]*(?:in )?[\[(]?(?P<unit>[A-Za-zµμ]+)[\])]?)?"
 )
 _NUMBER = re.compile(
     r"|n|nr|no|num|#|idx|index|row|points?|count(er)?|sequence|x|unnamed: ?0|__index_level_0__|"
@@ -129,14 +129,19 @@ def _place_of_times(columns: Sequence[Column]) -> int | None:
         if column.dates_ns is not None or column.is_time or is_time_unit(column.unit):
             return place
     for place, column in enumerate(columns):
-        named = _TIME.fullmatch(column.name.strip())
+        named = _TIME.fullmatch(_own_name(column))
         if not named or column.unit or not (named["unit"] is None or is_time_unit(named["unit"])):
             continue
-        if len(column.name.strip()) > 1 or _grows_evenly(column.values):  # T may be a temperature
+        if len(_own_name(column)) > 1 or _grows_evenly(column.values):  # T may be a temperature
             return place
     first = columns[0]
     says_nothing = not first.unit and not re.search(r"[^\W\d_]", first.name)
     return 0 if says_nothing and _grows_evenly(first.values) else None
+
+
+def _own_name(column: Column) -> str:
+    """Return the name without those of the groups or structures that it is in."""
+    return re.split(r"[./](?=[A-Za-z])(?!.*[\[(])", column.name.strip())[-1]
 
 
 def _grows_evenly(x: NDArray[np.float64]) -> bool:
@@ -152,7 +157,7 @@ def _step(x: NDArray[np.float64]) -> float:
 
 def _unit_s(times: Column) -> float:
     """Return the unit of a column of times [s]: as the file says it, else by size, else seconds."""
-    named = _TIME.fullmatch(times.name.strip())
+    named = _TIME.fullmatch(_own_name(times))
     unit = times.unit or (named["unit"] if named else None) or ""
     if unit.strip().casefold() in SECONDS_BY_UNIT:
         return SECONDS_BY_UNIT[unit.strip().casefold()]

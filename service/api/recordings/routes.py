@@ -243,6 +243,7 @@ def _details(context: ApiContext, entry: RecordingEntry) -> RecordingDetails:
     files = context.repository.recording_files(entry.id)
     return RecordingDetails(
         **Recording.model_validate(entry).model_dump(),
+        copies=[one.id for one in context.repository.copies_of(entry.id)],
         files=[RecordingFile.model_validate(file) for file in files],
         diagnosis=None if diagnosis is None else Diagnosis.model_validate(diagnosis.document),
     )

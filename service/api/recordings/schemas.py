@@ -55,6 +55,7 @@ class Recording(RelayClock):
     operation_remark: why the motor's parameters cannot be estimated from this start.
     duration_s: its length; pre_trigger_s: how much of it is before the trigger; null before it was read.
     parts: the recordings that it was joined from (source joined); null of others.
+    copy_of: the recording of the same event, with values as fine or finer, that counts in its place.
     That time is the relay's; `clock_...` is the latest comparison of its clock when the recording was stored,
     null where that was not made within an hour of it.
     """
@@ -72,6 +73,7 @@ class Recording(RelayClock):
     duration_s: float | None
     pre_trigger_s: float | None
     parts: Listed[str] | None
+    copy_of: str | None
     announced_time: Time = Field(validation_alias="announced_ns")
     fetched_time: Time | None = Field(validation_alias="fetched_ns")
     recorded_time: Time | None = Field(validation_alias="recorded_ns")
@@ -90,7 +92,11 @@ class RecordingFile(Document):
 
 
 class RecordingDetails(Recording):
-    """A recording with its files and its latest diagnosis."""
+    """A recording with its files and its latest diagnosis.
 
+    copies: recordings of the same event in whose place it counts.
+    """
+
+    copies: Listed[str]
     files: Listed[RecordingFile]
     diagnosis: Diagnosis | None

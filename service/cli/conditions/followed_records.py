@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
-from core.condition.copies import SAME_TIME_NS, is_copy
+from core.condition.copies import SAME_TIME_NS, Outline, is_copy, outline_of
 from core.condition.measuring.observing import observation_of
 from core.condition.observation import Observation
 from core.diagnosis.acceptance import accept
@@ -45,7 +45,7 @@ class Seen:
 
     path: as it was found. time_ns: of its trigger, UTC; None where it cannot be read. observation: None where
     the record was refused. refusal: why. operation: what the motor does in it, where that can be told.
-    fidelity: how finely it has its values. rotor: of a record that is long enough; None of others. supply:
+    outline: what tells copies of its event. rotor: of a record that is long enough; None of others. supply:
     None where it shows nothing of it.
     """
 
@@ -54,7 +54,7 @@ class Seen:
     observation: Observation | None
     refusal: str = ""
     operation: Operation | None = None
-    fidelity: Fidelity = Fidelity.TEXT
+    outline: Outline | None = None
     rotor: RotorFinding | None = None
     supply: SupplyFigures | None = None
 
@@ -165,7 +165,8 @@ def observe_record(path: Path, motor: Motor, *, lenient: bool) -> Seen:
     observation = observation_of(recording, acceptance.accepted)
     if observation is None:
         return unused.refused("it gives no finite negative-sequence voltage and current")
-    seen = Seen(path, time_ns, observation, fidelity=fidelity_of(path))
+    outline = outline_of(recording, motor, fidelity_of(path))
+    seen = Seen(path, time_ns, observation, outline=outline)
     if recording.duration_s >= LEAST_OF_ROTOR_S:
         examined = examine(recording, motor)  # the rotor takes the running point of a diagnosis
         return replace(seen, rotor=examined.rotor, supply=examined.supply)
@@ -183,7 +184,7 @@ def _without_copies(seen: Sequence[Seen]) -> Iterator[Seen]:
         if same is None:
             kept.append(one)
             continue
-        best, worse = sorted((kept[same], one), key=lambda each: each.fidelity)
+        best, worse = sorted((kept[same], one), key=_coarseness)
         kept[same] = best
         copies[worse.path] = best.path
     for one in seen:
@@ -202,6 +203,8 @@ def _near(kept: Sequence[Seen], one: Seen) -> Iterator[int]:
 
 
 def _is_copy(one: Seen, other: Seen) -> bool:
-    if one.observation is None or other.observation is None:
-        return False
-    return is_copy(one.observation, other.observation)
+    return one.outline is not None and other.outline is not None and is_copy(one.outline, other.outline)
+
+
+def _coarseness(one: Seen) -> int:
+    return Fidelity.TEXT if one.outline is None else one.outline.fidelity

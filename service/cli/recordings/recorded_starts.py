@@ -72,7 +72,8 @@ def fetch_starts(service: ServiceClient, plate: Plate, chosen: Sequence[str], fo
 
 
 def _starts(service: ServiceClient, motor: str) -> list[Document]:
-    return list(service.list_recordings_of_motor(motor, operation="start"))
+    found = service.list_recordings_of_motor(motor, operation="start")
+    return [one for one in found if one["copy_of"] is None]
 
 
 def _of_motor(service: ServiceClient, recording_id: str, motor: str) -> Document:

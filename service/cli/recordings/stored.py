@@ -14,7 +14,7 @@ from service.client.verdicts import local_time, local_times, verdict_text
 
 FIELDS = (
     "recorded_time", "motor", "ied", "source", "name", "state", "operation", "operation_remark", "verdict",
-    "reason", "size_bytes",
+    "reason", "copy_of", "size_bytes",
     "announced_time", "fetched_time", "id",
 )  # fmt: skip
 

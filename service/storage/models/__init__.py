@@ -37,6 +37,7 @@ from service.storage.models.record_figures import DETAILS, FIGURE_SUBJECTS, Reco
 from service.storage.models.recordings import (
     BaselineRecordingRow,
     BaselineRow,
+    OutlineRow,
     RecordingFileRow,
     RecordingRequestRow,
     RecordingRow,
@@ -92,6 +93,7 @@ __all__ = [
     "NotificationAlarmRow",
     "NotificationRow",
     "ObservationRow",
+    "OutlineRow",
     "PasskeyRow",
     "QuarantineRow",
     "RecordFiguresRow",

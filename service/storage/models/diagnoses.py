@@ -65,8 +65,8 @@ class DiagnosisRow(Base):
     """The result of one job. `current` marks the latest of a recording: that one is in the trend.
 
     ci95: from all causes; null in rows of versions that knew only the scatter.
-    says_nothing: whether the motor was seen to stand, start, stop or trip, and nothing of its winding: such a
-    result is none of the motor's, neither good nor bad.
+    says_nothing: whether the motor was seen to stand, start, stop or trip, and nothing of its winding, or the
+    recording is a copy: such a result is none of the motor's, neither good nor bad.
     """
 
     __tablename__ = "diagnoses"

@@ -21,6 +21,7 @@ class RecordingRow(Base):
     duration_s, pre_trigger_s: its length, and how much of it is before the trigger; null before it was read.
     parts: ids of the recordings that it was joined from; null of others.
     joined_id: id of the recording that was joined from it and others; null where none was.
+    copy_of: id of the recording of the same event that counts in its place; null where it counts itself.
     """
 
     __tablename__ = "recordings"
@@ -49,6 +50,7 @@ class RecordingRow(Base):
     pre_trigger_s: Mapped[float | None] = mapped_column(Double)
     parts: Mapped[tuple[str, ...] | None]
     joined_id: Mapped[str | None] = mapped_column(String(36))
+    copy_of: Mapped[str | None] = mapped_column(String(36))
 
     __table_args__ = (
         Index("ux_recordings_relay", "ied", "name", "digest", unique=True),
@@ -71,6 +73,12 @@ class RecordingRow(Base):
         Index("ix_recordings_digest", "digest"),
         Index("ix_recordings_motor_recorded_ns_id", "motor", "recorded_ns", "id"),
         Index(
+            "ix_recordings_copy_of",
+            "copy_of",
+            sqlite_where=text("copy_of IS NOT NULL"),
+            postgresql_where=text("copy_of IS NOT NULL"),
+        ),
+        Index(
             "ix_recordings_untimed",
             "motor",
             "announced_ns",
@@ -79,6 +87,25 @@ class RecordingRow(Base):
             postgresql_where=text("recorded_ns IS NULL"),
         ),
     )
+
+
+class OutlineRow(Base):
+    """What tells copies of one event (core.condition.copies), of each recording that was diagnosed.
+
+    It outlives a counted recording that a rule of retention deletes, as what that one told of its motor does.
+    time_ns: the trigger time, UTC.  fidelity: 0 is the finest.
+    """
+
+    __tablename__ = "outlines"
+
+    recording_id: Mapped[str] = mapped_column(String(36), primary_key=True)
+    motor: Mapped[str] = mapped_column(ForeignKey("motors.name"))
+    time_ns: Mapped[int]
+    fidelity: Mapped[int]
+    currents_A: Mapped[tuple[float, ...]]
+    voltages_V: Mapped[tuple[float, ...]]
+
+    __table_args__ = (Index("ix_outlines_motor_time_ns", "motor", "time_ns"),)
 
 
 class RemoteRecordRow(Base):

@@ -60,6 +60,7 @@ class RecordingEntry:
     operation_remark: why the parameters of a motor cannot be estimated from this start; None where they can.
     duration_s, pre_trigger_s: its length, and how much of it is before the trigger; None before it was read.
     parts: the recordings that it was joined from; None of others.
+    copy_of: the recording of the same event that counts in its place; None where it counts itself.
     """
 
     id: str
@@ -85,6 +86,7 @@ class RecordingEntry:
     duration_s: float | None = None
     pre_trigger_s: float | None = None
     parts: tuple[str, ...] | None = None
+    copy_of: str | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -42,6 +42,7 @@ from service.storage.repository.notifications import NotificationRows
 from service.storage.repository.overviews import OverviewRows
 from service.storage.repository.plant import PlantRows
 from service.storage.repository.recordings.baselines import BaselineRows
+from service.storage.repository.recordings.copies import CopyRows
 from service.storage.repository.recordings.deletions import DeletionRows
 from service.storage.repository.recordings.folders import FolderRows
 from service.storage.repository.recordings.recordings import RecordingRows
@@ -101,6 +102,7 @@ class Repository(
     LoadProfileRows,
     RelayReportRows,
     BaselineRows,
+    CopyRows,
     DeletionRows,
     FolderRows,
     RetentionRows,

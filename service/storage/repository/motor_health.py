@@ -111,7 +111,11 @@ def _health_of(session: Session, motors: Sequence[MotorEntry]) -> tuple[MotorHea
 
 def is_usable_start() -> ColumnElement[bool]:
     """Return the condition that the parameters of a motor can be estimated from a recording."""
-    return and_(RecordingRow.operation == Operation.START, RecordingRow.operation_remark.is_(None))
+    return and_(
+        RecordingRow.operation == Operation.START,
+        RecordingRow.operation_remark.is_(None),
+        RecordingRow.copy_of.is_(None),
+    )
 
 
 _OF_MOTORS: BindParameter[str] = bindparam("of_motors", expanding=True)

@@ -74,7 +74,7 @@ class Waveforms:
 
 @dataclass(frozen=True, slots=True)
 class RecordingPage:
-    """One recording. problem: why its samples are not shown."""
+    """One recording. problem: why its samples are not shown.  copies: other files of the event."""
 
     entry: RecordingEntry
     stored: DiagnosisEntry | None
@@ -83,6 +83,7 @@ class RecordingPage:
     supply: SupplyShown | None
     answer: AnswerShown | None
     files: Sequence[RecordingFile]
+    copies: Sequence[RecordingEntry]
     earlier: str | None
     later: str | None
     waveforms: Waveforms | None
@@ -109,6 +110,7 @@ def recording_page(context: ApiContext, recording_id: str, at_s: float | None) -
         supply=supply_shown(diagnosis),
         answer=_answer(diagnosis),
         files=repository.recording_files(entry.id),
+        copies=repository.copies_of(entry.id),
         earlier=earlier,
         later=later,
         waveforms=waveforms,

@@ -14,7 +14,7 @@ from core.machines.candidates import LoadLaw
 from core.machines.parameters import Connection, MachineParameters, Motor, Nameplate
 from core.recordings import Recording, RecordingError
 from core.signals.clarke import clarke, inverse_clarke
-from ied_sim.motor.load import Load
+from ied_sim.motor.load import Load, LoadCycle
 from ied_sim.motor.plant import MotorPlant
 from ied_sim.motor.sensors import Sensors
 from ied_sim.motor.supply import Supply
@@ -296,3 +296,52 @@ def test_progress_only_grows_and_the_same_records_give_the_same_answer() -> None
     again = commission([recording], plate)
     assert again.machine == first.machine
     assert first.as_dict().keys() == again.as_dict().keys()
+
+
+@pytest.mark.parametrize(
+    ("change", "kind"), [((0.4, 0.2, 0.001), "step"), ((0.5, 0.1, 0.3), "rise")], ids=["step", "rise"]
+)
+def test_a_load_that_changes_during_the_start_is_told_and_spoils_nothing(
+    change: tuple[float, float, float], kind: str
+) -> None:
+    """As one did that gave R_s 6 % too small, and R_r 10 % too great, without a warning."""
+    record = StartRecord(load_level=0.1, duration_s=0.6, snr_db=60.0, load_change=change)
+    result = commission([record.of(REFERENCE)], plate_of(REFERENCE, MIDDLE))
+    assert np.abs(errors(result, REFERENCE)).max() < 2e-3
+    (start,) = result.starts
+    assert start.load_change is not None
+    assert start.load_change.change.value == pytest.approx(change[0], abs=0.005)
+    assert start.load_change.begins_s == pytest.approx(change[1], abs=0.005)
+    assert start.load_level.value == pytest.approx(0.1, abs=0.005)
+    records = result.as_dict()["records"]
+    assert isinstance(records, list)
+    assert [one["load_change"]["kind"] for one in records] == [kind]
+    assert any("the load rises by" in one for one in result.warnings)
+    for name in PARAMETERS:
+        low, high = result.parameters[name].ci95 or (0.0, 0.0)
+        assert 0.999 * low <= getattr(REFERENCE.parameters, name) <= 1.001 * high
+
+
+def test_a_constant_load_has_no_warning() -> None:
+    (start,) = (result := found(REFERENCE, StartRecord(duration_s=0.6, snr_db=50.0))).starts
+    assert start.load_change is None
+    assert result.warnings == ()
+
+
+def test_of_two_starts_one_load_may_change() -> None:
+    steady = StartRecord(load_level=0.3, duration_s=0.5, snr_db=50.0, seed=1)
+    stepped = replace(steady, load_change=(0.3, 0.15, 0.001), seed=2)
+    first, second = found(REFERENCE, steady, stepped).starts
+    assert first.load_change is None
+    assert second.load_change is not None
+    assert second.load_change.change.value == pytest.approx(0.3, abs=0.01)
+
+
+def test_a_load_that_changes_twice_widens_the_intervals_and_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    levels = ((0.0, 0.3), (0.1, 0.3), (0.101, 0.8), (0.2, 0.8), (0.201, 0.4), (50.0, 0.4))
+    monkeypatch.setattr(StartRecord, "load", Load(0.3, cycle=LoadCycle(levels, 100.0)))
+    result = commission([StartRecord(duration_s=0.8, snr_db=60.0).of(REFERENCE)], plate_of(REFERENCE, MIDDLE))
+    assert any("noise does not explain" in one for one in result.warnings)
+    for name in PARAMETERS:
+        low, high = result.parameters[name].ci95 or (0.0, np.inf)
+        assert low <= getattr(REFERENCE.parameters, name) <= high

@@ -25,6 +25,15 @@ def roles(*channels: tuple[str, str, str]) -> list[tuple[Quantity, str | None]]:
         ("I_L2", "L2", "A", CURRENT, "b"),
         ("i-L3", "L3", "A", CURRENT, "c"),
         ("IR", "R", "A", CURRENT, "a"),
+        ("Current Phase A", "", "A", CURRENT, "a"),
+        ("Phase B current (A)", "", "A", CURRENT, "b"),
+        ("Current (Phase C) [A]", "", "A", CURRENT, "c"),
+        ("I S", "", "A", CURRENT, "b"),
+        ("I (A)", "", "A", CURRENT, None),  # its unit
+        ("Motor I BEARING", "", "A", CURRENT, None),
+        ("U L2 [V]", "", "V", PHASE_VOLTAGE, "b"),
+        ("Voltage (A-N)", "", "V", PHASE_VOLTAGE, "a"),
+        ("Spannung L1-L2", "", "V", LINE_VOLTAGE, "ab"),
         ("Current 1", "T", "A", CURRENT, "c"),
         ("IN", "N", "A", CURRENT, "n"),
         ("3I0", "", "A", CURRENT, None),
@@ -139,7 +148,8 @@ def test_a_line_voltage_the_other_way_round_needs_another_beside_it() -> None:
     [
         *(("A", "A", 1), ("kA", "A", 1e3), ("mA", "A", 1e-3)),
         *(("kV", "V", 1e3), ("KV", "V", 1e3), ("mV", "V", 1e-3), ("MV", "V", 1e6)),
-        *(("rpm", "rpm", 1), ("", "", 1)),
+        *(("Ampere", "A", 1), ("AMPS", "A", 1), ("volt", "V", 1), ("kVolts", "V", 1e3), ("À", "A", 1)),
+        *(("rpm", "rpm", 1), ("", "", 1), ("VA", "VA", 1)),
     ],
 )
 def test_units_become_si(unit: str, si_unit: str, scale: float) -> None:

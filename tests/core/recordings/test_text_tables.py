@@ -47,6 +47,9 @@ FORMS = {
     "dates": ["Timestamp,Ia"] + [f"2026-01-31T12:00:00.{200 * k:06d}Z,{wave(k)}" for k in range(ROWS)],
     "German dates": ["Datum;Ia"]
     + [f"31.01.2026 12:00:00,{2 * k:04d};{wave(k)}".replace(".0 ", " ") for k in range(ROWS)],
+    "unit in words": ["Zeit in ms;I L1 [A]"] + [f"{k / 5:.1f};{wave(k)}" for k in range(ROWS)],
+    "words behind": ["t,Ia"] + [f"{k / RATE_HZ:.4f},{wave(k)}" for k in range(ROWS)] + ["", "END OF DATA"],
+    "rate in a comment": ["# fs = 5000", "Ia"] + [f"{wave(k)}" for k in range(ROWS)],
     "microseconds in the name": ["time_us,Ia"] + [f"{200 * k},{wave(k)}" for k in range(ROWS)],
     "seconds since 1970": ["time,Ia"] + [f"{1769860800 + k / RATE_HZ:.4f},{wave(k)}" for k in range(ROWS)],
     "no header": [f"{k / RATE_HZ:.4f} {wave(k)}" for k in range(ROWS)],

@@ -14,6 +14,7 @@ from core.condition.verdict.judging import condition_of
 from core.machines.motor_file.reader import read_motor
 from core.machines.motor_file.writer import write_motor
 from core.recordings import comtrade, read
+from core.recordings.comtrade.writer import DataFormat
 from core.time_stamps import rfc3339
 from core.units import NANOSECONDS_PER_DAY
 from service.cli import main
@@ -153,6 +154,25 @@ def test_what_cannot_be_used_is_named_and_the_rest_is_followed(
     assert set(reasons) == {"BAD.CFG", "PICTURE.png", "GONE.CFG", "R0001.CFG"}
     assert "copy of" in reasons["R0001.CFG"]
     assert "suffix" in reasons["PICTURE.png"]
+
+
+def test_of_an_event_in_several_formats_the_finest_counts(
+    few: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    event = read(few / "R0001.CFG")
+    (few / "R0001.CFG").unlink()
+    formats: dict[str, DataFormat] = {"OSCA001": "ASCII", "OSC16B001": "BINARY", "OSC32F001": "FLOAT32"}
+    for name, data_format in formats.items():
+        comtrade.write(few / f"{name}.CFG", event, revision=2013, data_format=data_format)
+    document = followed(capsys, few, str(few))
+    assert [Path(one["record"]).name for one in document["history"]] == [
+        "R0000.CFG",
+        "OSC32F001.CFG",
+        "R0002.CFG",
+    ]
+    skipped = {Path(one["record"]).name: one["reason"] for one in document["skipped"]}
+    assert set(skipped) == {"OSCA001.CFG", "OSC16B001.CFG"}
+    assert all("a copy of" in one and "OSC32F001.CFG" in one for one in skipped.values())
 
 
 def test_records_of_a_stopped_motor_only_age_the_condition(

@@ -8,7 +8,6 @@ from typing import Any
 from sqlalchemy import Select, func, select
 from sqlalchemy.orm import Session
 
-from core.condition.copies import SAME_TIME_NS, is_copy
 from core.condition.observation import Observation
 from service.storage.errors import UnstorableDiagnosisError
 from service.storage.models import (
@@ -126,24 +125,6 @@ class ObservationRows(Sessions):
         )
         with self._read() as session:
             return Backlog(*(session.scalar(query) or 0 for query in (marked, problems)))
-
-
-def copied(session: Session, recording_id: str, motor: str, observation: Observation) -> str | None:
-    """Return which other recording of the motor is of the same event, in words; None where none is."""
-    near = select(*OBSERVED).where(
-        ObservationRow.motor == motor,
-        ObservationRow.recording_id != recording_id,
-        ObservationRow.time_ns.between(
-            observation.time_ns - SAME_TIME_NS, observation.time_ns + SAME_TIME_NS
-        ),
-    )
-    for values in session.execute(near):
-        other = record_observation(values)
-        if is_copy(observation, other.observation):
-            row = session.get(RecordingRow, other.recording_id)
-            name = "" if row is None else f"{row.name} "
-            return f"a copy of recording {name}({other.recording_id}): the same event, which counts once"
-    return None
 
 
 def keep_observation(

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from sqlalchemy import Select, bindparam, func, literal_column, or_, select, update
 from sqlalchemy.orm import joinedload
 
+from core.condition.copies import Outline
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
 from core.diagnosis.verdict import Diagnosis, Verdict, not_finite
 from core.findings.findings import Findings
@@ -30,13 +31,14 @@ from service.storage.records import ClaimedJob, Cursor, DiagnosisEntry, Job, Job
 from service.storage.records.actors import SERVICE, Actor
 from service.storage.repository.audit.entries import note_change
 from service.storage.repository.conditions.conditions import note_standstill
-from service.storage.repository.conditions.observations import copied, keep_observation
+from service.storage.repository.conditions.observations import keep_observation
 from service.storage.repository.history.record_figures import keep_record_figures
 from service.storage.repository.history.rotor import keep_rotor_finding
 from service.storage.repository.history.starts import keep_start
 from service.storage.repository.jobs.locks import lock_motor_of
 from service.storage.repository.jobs.steps import end_job, give_up_job, is_held, release, retry_or_give_up
 from service.storage.repository.recordings.baselines import baseline_rows
+from service.storage.repository.recordings.copies import settle_copies
 from service.storage.repository.recordings.recordings import new_job, require_room
 from service.storage.repository.recordings.requests import diagnose_rows
 from service.storage.repository.recordings.series import OF_A_SERIES, is_counted_part
@@ -166,11 +168,13 @@ class JobRows(Sessions):
         now_ns: int,
         runner: str,
         left_out: str | None = None,
+        outline: Outline | None = None,
     ) -> bool:
         """Keep what a record tells: diagnosis, figures, job, recording and requests in one transaction.
 
         Again changes nothing. recorded_ns: trigger time written in the record.  left_out: why it does not
-        count for its motor's condition, nor in trends, for people.
+        count for its motor's condition, nor in trends, for people.  outline: what tells copies of its event,
+        of which the finest counts; None where it has no copies.
         Returns False, and keeps nothing, where the job is not the runner's any more.
         Raises NotFoundError, UnstorableDiagnosisError.
         """
@@ -183,17 +187,20 @@ class JobRows(Sessions):
             if not is_held(row, runner):
                 return False
             recording = found(session, RecordingRow, row.recording_id, "recording", lock=True)
-            if observation is not None:
-                copy_of = copied(session, recording.id, recording.motor, observation)
-                if copy_of is not None:
-                    observation, start, left_out = None, None, copy_of
+            earlier = session.connection().execute(_NOT_CURRENT, {"of_recording": recording.id})
+            is_first = earlier.rowcount == 0  # nothing is kept of the recording that this one replaces
+            if left_out is not None:
+                outline = None
+            copy_of = settle_copies(session, recording, outline, now_ns, is_first=is_first)
+            if copy_of is not None:
+                observation, start, left_out = None, None, copy_of
             remark = left_out
             if observation is not None and is_counted_part(session, recording, recorded_ns):
                 observation, remark = None, OF_A_SERIES
             document = _document(findings)
-            earlier = session.connection().execute(_NOT_CURRENT, {"of_recording": recording.id})
-            is_first = earlier.rowcount == 0  # nothing is kept of the recording that this one replaces
-            session.add(_diagnosis_row(row, recording.motor, diagnosis, document, recorded_ns, now_ns))
+            told = _diagnosis_row(row, recording.motor, diagnosis, document, recorded_ns, now_ns)
+            told.says_nothing = told.says_nothing or copy_of is not None
+            session.add(told)
             end_job(row, JobState.DONE, None, now_ns)
             recording.state = RecordingState.DIAGNOSED
             recording.reason = None if remark is None else storable(remark)

@@ -185,6 +185,8 @@ def _doubt(session: Session, motor: str, recording_id: str) -> str | None:
     diagnosis = only(session, query)
     if diagnosis is None:
         raise UnusableBaselineError(recording_id, f"it is {recording.state}, not diagnosed")
+    if recording.copy_of is not None:
+        raise UnusableBaselineError(recording_id, f"it is a copy: take recording {recording.copy_of}")
     if diagnosis.verdict is Verdict.UNDIAGNOSABLE:
         raise UnusableBaselineError(recording_id, "the diagnosis refused it")
     return _doubt_of_verdict(diagnosis) or _doubt_of_condition(session, recording_id)

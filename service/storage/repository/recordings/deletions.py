@@ -37,6 +37,7 @@ from service.storage.repository.conditions.observations import forget_observatio
 from service.storage.repository.history.record_figures import forget_record_figures
 from service.storage.repository.history.rotor import forget_rotor_finding
 from service.storage.repository.history.starts import forget_start
+from service.storage.repository.recordings.copies import forget_outline, release_copies
 from service.storage.repository.recordings.folders import discard_folder, lock_folder
 from service.storage.repository.recordings.recordings import stored_before
 from service.storage.repository.recordings.requests import KIND, fail_row, fail_rows
@@ -243,6 +244,9 @@ def delete_row(
         forget_start(session, row.id)
         forget_rotor_finding(session, row.id)
         forget_record_figures(session, row.id)
+        release_copies(session, row, now_ns)
+    if deleted_by is DeletedBy.PERSON or row.copy_of is not None:
+        forget_outline(session, row.id)
     session.execute(delete(DiagnosisRow).where(DiagnosisRow.recording_id == row.id))
     session.execute(delete(RecordingFileRow).where(RecordingFileRow.recording_id == row.id))
     for job in session.scalars(_jobs_of(row.id)):

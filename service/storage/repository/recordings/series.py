@@ -188,6 +188,7 @@ def _series(session: Session, request: RecordingRequestRow) -> Series | None:
             RecordingRow.recorded_ns >= first.recorded_ns,
             RecordingRow.recorded_ns <= first.recorded_ns + length_ns,
             RecordingRow.digest.is_not(None),
+            RecordingRow.copy_of.is_(None),
         )
         .order_by(RecordingRow.recorded_ns, RecordingRow.id)
     )
