@@ -64,6 +64,9 @@ _FIGURE_COLUMNS = (
     "swing_frequency_hz", "swing_load_torque_deviation", "swing_detection_limit", "load", "frequency_hz",
     "voltage_unbalance_iec", "voltage_unbalance_nema", "derating", "voltage_deviation", "thd_voltage",
     "harmonic_voltage_factor", "current_unbalance", "thd_current", "active_power_W", "power_factor", "supply",
+    "efficiency", "efficiency_ci95_low", "efficiency_ci95_high", "losses_W", "losses_W_ci95_low",
+    "losses_W_ci95_high", "output_W", "turns_loss_W", "unbalance_loss_W", "voltage_loss_W", "rotor_loss_W",
+    "losses",
 )  # fmt: skip
 _STATISTICS_COLUMNS = (
     "motor", "time_ns", "since_ns", "starts", "running_s", "stopped_s", "mean_current_A", "peak_current_A",
@@ -80,6 +83,10 @@ DAYS = f"""
 HARMONICS = "[1.0,0.001,0.004,0.0,0.03,0.0,0.017,0.0,0.0,0.0,0.006,0.0,0.004,0.0,0.0,0.0,0.002]"
 REASONS = '["no asymmetry of the rotor above -52 dB"]'
 NO_REASONS = '{"reasons":[]}'
+LOSS_DETAILS = (
+    '{"load_class":6,"stator_copper_W":43.5,"rotor_copper_W":20.0,"iron_W":27.0,"friction_W":18.0,"stray_W":5.0,'
+    '"reasons":[]}'
+)
 SUPPLY_DETAILS = (
     f'{{"line_voltages_V":[401.0,399.5,396.25],"voltage_harmonics":{HARMONICS},"line_currents_A":[1.5,1.48,1.53],'
     f'"current_harmonics":{HARMONICS},"duration_s":10.0,"reasons":[]}}'
@@ -177,6 +184,7 @@ def _record_figures(amounts: Amounts) -> Iterator[Row]:
             id_of(RECORDING, number), motor, time_ns, ripple, 0.001, 0.0035, -58.0, -61.5, 0.002, 0.001,
             24.25, NO_REASONS, 0.003, 0.0008, 4.125, 0.0006, 0.004, NO_REASONS, 50.02, unbalance, unbalance,
             1.0, -0.003, 0.021, 0.0085, 0.02, 0.035, 612.5, 0.61, SUPPLY_DETAILS,
+            0.815, 0.775, 0.8475, 113.5, 93.5, 137.75, 499.0, 0.0, 2.25, -0.5, 0.0, LOSS_DETAILS,
         )  # fmt: skip
 
 

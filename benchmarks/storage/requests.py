@@ -89,6 +89,7 @@ TIMED: Mapping[str, tuple[str, ...]] = {
     "/api/v1/motors/{name}/swings/trend": _TREND,
     "/api/v1/motors/{name}/starts": (*_MOTOR, "{busy}?limit=1000", "{busy}?cursor={deep}"),
     "/api/v1/motors/{name}/relay-events": (*_MOTOR, "{busy}?limit=1000", "{busy}?cursor={deep}"),
+    "/api/v1/motors/{name}/losses": _MOTOR,
     "/api/v1/motors/{name}/load-profile": (*_MOTOR, "{busy}?days=1", "{busy}?days=90"),
     "/api/v1/motors/{name}/notes": (*_MOTOR, "{busy}?limit=1000", "{busy}?cursor={deep}"),
     "/api/v1/motors/{name}/notes/{note_id}": ("{busy} {note}",),
