@@ -68,6 +68,7 @@ _FIGURE_COLUMNS = (
     "losses_W_ci95_high", "output_W", "turns_loss_W", "unbalance_loss_W", "voltage_loss_W", "rotor_loss_W",
     "losses",
 )  # fmt: skip
+_OUTLINE_COLUMNS = ("recording_id", "motor", "time_ns", "fidelity", "currents_A", "voltages_V")
 _STATISTICS_COLUMNS = (
     "motor", "time_ns", "since_ns", "starts", "running_s", "stopped_s", "mean_current_A", "peak_current_A",
     "peak_start_current_A", "longest_start_s", "trips",
@@ -101,6 +102,7 @@ def tables(amounts: Amounts) -> Iterator[Table]:
     yield Table("starts", _START_COLUMNS, _starts(amounts))
     yield Table("rotor_findings", _ROTOR_COLUMNS, _rotor_findings(amounts))
     yield Table("record_figures", _FIGURE_COLUMNS, _record_figures(amounts))
+    yield Table("outlines", _OUTLINE_COLUMNS, _outlines(amounts))
     yield Table("relay_statistics", _STATISTICS_COLUMNS, _relay_statistics(amounts))
     yield Table("relay_events", ("motor", "kind", "time_ns"), _relay_events(amounts))
 
@@ -186,6 +188,11 @@ def _record_figures(amounts: Amounts) -> Iterator[Row]:
             1.0, -0.003, 0.021, 0.0085, 0.02, 0.035, 612.5, 0.61, SUPPLY_DETAILS,
             0.815, 0.775, 0.8475, 113.5, 93.5, 137.75, 499.0, 0.0, 2.25, -0.5, 0.0, LOSS_DETAILS,
         )  # fmt: skip
+
+
+def _outlines(amounts: Amounts) -> Iterator[Row]:
+    for number, motor, time_ns in _observed(amounts):
+        yield id_of(RECORDING, number), motor, time_ns, 1, "[1.5,1.48,1.53]", "[231.0,230.5,229.0]"
 
 
 def _relay_statistics(amounts: Amounts) -> Iterator[Row]:

@@ -31,6 +31,7 @@ GROWING = frozenset(
         "deletions",
         "deleted_remote_records",
         "observations",
+        "outlines",
         "condition_changes",
         "condition_days",
         "condition_events",

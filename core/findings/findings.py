@@ -71,7 +71,7 @@ class Findings:
         Parameters
         ----------
         of_rotor : bool, default True
-            Whether the record could tell of the rotor, and so of air gap, load and losses.
+            Whether the record could tell of the rotor, and so of air gap and load.
 
         Returns
         -------
@@ -82,9 +82,7 @@ class Findings:
         if of_rotor:
             found |= {Subject.AIR_GAP: self.eccentricity, Subject.LOAD: self.pulsation}
         if self.supply is not None:
-            found[Subject.SUPPLY] = self.supply
-            if of_rotor:
-                found[Subject.LOSSES] = self.losses
+            found |= {Subject.SUPPLY: self.supply, Subject.LOSSES: self.losses}
         return found
 
     def as_dict(self) -> dict[str, object]:

@@ -2,7 +2,17 @@
 
 from typing import Annotated, TypeVar
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StringConstraints, model_validator
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    GetJsonSchemaHandler,
+    StringConstraints,
+    model_validator,
+)
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema
 
 from core.units import NANOSECONDS_PER_SECOND
 
@@ -31,6 +41,28 @@ def _begin(found: object) -> object:
 Item = TypeVar("Item")
 Listed = Annotated[list[Item], BeforeValidator(_begin), Field(max_length=LONGEST_LIST)]
 """This is a list in an answer; what is a set inside comes sorted."""
+
+
+class _BoundedLists:
+    """Says in the document of a core's dataclass that no list of it is longer."""
+
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        document = handler(schema)
+        for field in handler.resolve_ref_schema(document)["properties"].values():
+            for one in (field, *field.get("anyOf", ())):
+                if one.get("type") == "array":
+                    one.setdefault("maxItems", LONGEST_LIST)
+        return document
+
+
+def _begin_each(found: object) -> object:
+    return {name: _begin(value) for name, value in found.items()} if isinstance(found, dict) else found
+
+
+Found = Annotated[Item, BeforeValidator(_begin_each), _BoundedLists()]
+"""This is a dataclass of the core in an answer, as it was found and stored."""
 
 
 class Document(BaseModel):

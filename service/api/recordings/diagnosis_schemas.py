@@ -16,7 +16,7 @@ from core.rotor.swing_findings import EccentricityFinding, PulsationFinding
 from core.speed.finding import SpeedFinding
 from core.supply.figures import SupplyFigures
 from service.api.classification.schemas import Classification
-from service.api.document import Document, Listed, RequestDocument
+from service.api.document import Document, Found, Listed, RequestDocument
 from service.api.times import Time
 from service.storage.states import JobState
 
@@ -134,13 +134,13 @@ class Diagnosis(Document):
     fit: FittedParameters | None = None
     phase_probabilities: tuple[float, float, float] | None = None
     hypotheses: Listed[Hypothesis] = Field(default_factory=list)
-    rotor: RotorFinding | None = None
-    supply: SupplyFigures | None = None
+    rotor: Found[RotorFinding] | None = None
+    supply: Found[SupplyFigures] | None = None
     classification: Classification | None = None
-    eccentricity: EccentricityFinding | None = None
-    pulsation: PulsationFinding | None = None
-    speed: SpeedFinding | None = None
-    losses: LossFigures | None = None
+    eccentricity: Found[EccentricityFinding] | None = None
+    pulsation: Found[PulsationFinding] | None = None
+    speed: Found[SpeedFinding] | None = None
+    losses: Found[LossFigures] | None = None
 
     @property
     def rotor_slip(self) -> float | None:

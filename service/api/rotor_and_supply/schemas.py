@@ -5,7 +5,7 @@ Fields that are null are not known (yet).
 
 from core.rotor.finding import RotorState
 from core.rotor.swing_findings import EccentricityFinding, PulsationFinding
-from service.api.document import Document, Listed
+from service.api.document import Document, Found, Listed
 from service.api.times import Time
 
 Interval = tuple[float, float]
@@ -42,8 +42,8 @@ class SwingTrendPoint(Document):
 
     time: Time
     recording_id: str
-    eccentricity: EccentricityFinding
-    pulsation: PulsationFinding
+    eccentricity: Found[EccentricityFinding]
+    pulsation: Found[PulsationFinding]
 
 
 class RotorLoadBin(Document):

@@ -135,8 +135,8 @@ def _tells(subject: Subject) -> list[ColumnElement[bool] | InstrumentedAttribute
             return []
         case Subject.LOAD:  # looked for together with the air gap, whose index answers
             return [details_of(Subject.AIR_GAP).is_not(None)]
-        case Subject.LOSSES:  # known where the supply is, whose index answers
-            return [details_of(Subject.SUPPLY).is_not(None), details_of(subject).is_not(None)]
+        case Subject.LOSSES:  # looked for together with the supply, whose index answers
+            return [details_of(Subject.SUPPLY).is_not(None)]
         case _:
             return [details_of(subject).is_not(None)]
 

@@ -91,8 +91,8 @@ class RecordFigureRows(Sessions):
 
     def latest_losses(self, motor: str, *, limit: int) -> tuple[LossEntry, ...]:
         """Return what a motor's latest recordings tell of its losses, oldest first. Raises NotFoundError."""
-        tells = (details_of(Subject.SUPPLY).is_not(None), details_of(Subject.LOSSES).is_not(None))
-        query = select(*_PLACE, *_LOSSES).where(RecordFiguresRow.motor == motor, *tells)
+        tells = (RecordFiguresRow.motor == motor, details_of(Subject.SUPPLY).is_not(None))
+        query = select(*_PLACE, *_LOSSES).where(*tells)
         with self._read() as session:
             found(session, MotorRow, motor, "motor")
             return latest_of(session, query, _ORDER, _loss_entry, limit=limit)
@@ -177,9 +177,8 @@ def latest_figures(
     query = select(*_PLACE, *_SUPPLY, *_LOSSES).where(*tells)
     entries = latest_of(session, query, _ORDER, lambda *row: row[len(_PLACE) :], limit=limit)
     supplies = (_finding(SupplyFigures, Subject.SUPPLY, one[: len(_SUPPLY)]) for one in entries)
-    losses = (one[len(_SUPPLY) :] for one in entries)
-    told = (_finding(LossFigures, Subject.LOSSES, one) for one in losses if one[-1] is not None)
-    return tuple(supplies), tuple(told)
+    losses = (_finding(LossFigures, Subject.LOSSES, one[len(_SUPPLY) :]) for one in entries)
+    return tuple(supplies), tuple(losses)
 
 
 def _values(subject: Subject, finding: Any) -> dict[str, object]:

@@ -149,7 +149,8 @@ def test_a_trend_has_what_is_shown_of_rotor_and_supply(
     }  # fmt: skip
     assert first["rotor_state"] == "fault"
     assert {name: float(first[name]) for name in figures} == figures
-    assert not any(second[name] for name in ("rotor_state", *figures))
+    assert second["rotor_state"] == "unsupported"
+    assert not any(second[name] for name in figures)
 
 
 @pytest.mark.parametrize("wanted", ["csv", "xlsx", "parquet"])

@@ -44,10 +44,3 @@ def test_a_recording_says_what_is_not_told_apart_and_what_would_tell(
     told = " ".join(words(page(client.get(f"/recordings/{recording_id}")), "section"))
     assert "Not told apart: shorted turns or high-resistance connection." in told
     assert "What would tell: a record at another load" in told
-
-
-def test_a_recording_of_an_earlier_version_has_no_answer(
-    client: httpx.Client, recorded: ExaminedRecordings
-) -> None:
-    document = page(client.get(f"/recordings/{recorded.add(SOUND_ROTOR)}"))
-    assert not document.cssselect("#answer")
