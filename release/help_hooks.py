@@ -82,7 +82,7 @@ def on_page_markdown(markdown: str, page: Page, **_others: object) -> str:
 
 
 def on_post_page(output: str, page: Page, **_others: object) -> str:
-    """Put the scripts within a page into files, for the service lets no others run; name the search's window."""
+    """Put the scripts within a page into files, for the service lets no others run; name the search."""
 
     def moved(found: re.Match[str]) -> str:
         file = f"assets/javascripts/{hashlib.sha256(found[1].encode()).hexdigest()[:12]}.js"

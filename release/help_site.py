@@ -15,13 +15,7 @@ class HelpSiteError(RuntimeError):
 
 def build(root: Path, folder: Path) -> None:
     """Make the site of a source tree in a folder; what was there goes. Raises HelpSiteError."""
-    command = [
-        sys.executable,
-        "-m",
-        "mkdocs",
-        "build",
-        "--strict",
-    ]  # not --quiet: it hides warnings from --strict, too
+    command = [sys.executable, "-m", "mkdocs", "build", "--strict"]  # --quiet hides warnings from --strict
     where = ["--config-file", str(root / "mkdocs.yml"), "--site-dir", str(folder.absolute())]
     quiet = {"NO_MKDOCS_2_WARNING": "1"}  # the theme's news of its successor
     ended = subprocess.run(  # noqa: S603 - our own interpreter and files
