@@ -19,7 +19,7 @@ MADE_PAGES := $(foreach page,architecture command alarm audit role quantity,test
 # docker compose where its engine answers, else nothing; COMPOSE="podman-compose" make compose-test: another one
 COMPOSE ?= $(shell docker compose version >/dev/null 2>&1 && docker info >/dev/null 2>&1 && echo docker compose)
 
-.PHONY: install site demo test campaigns test-all containers coverage hostile chaos compose-test compose-test-hosts lint docs client bench corpus interop fuzz lock advisories audit clean
+.PHONY: install site demo quick test campaigns test-all containers coverage hostile chaos compose-test compose-test-hosts lint docs client bench corpus interop fuzz lock advisories audit clean
 .DEFAULT_GOAL := install
 
 install: $(WARM) $(SITE)/index.html
@@ -47,6 +47,10 @@ $(SITE)/index.html: $(STAMP) mkdocs.yml release/help_site.py release/help_hooks.
 
 demo: install
 	@$(BIN)/mcc demo
+
+# What a change since main can break most directly, within a minute: make quick [SINCE=COMMIT] [SECONDS=60]
+quick: install
+	$(BIN)/python -m tests.quick $(if $(SINCE),--since $(SINCE)) $(if $(SECONDS),--seconds $(SECONDS))
 
 # What a change can break, within minutes.
 test: install
