@@ -12,11 +12,14 @@ import pytest
 from tests.quick.reach import Reached
 
 PROCESSES = 2
-START_S = 6.0
+START_S = 8.0
 """Processes and their imports take so long before the first test."""
-UNKNOWN_TEST_S = 6.0
+COLLECT_S = 0.2
+"""Each process imports each test file."""
 UNKNOWN_S = 3.0
-"""Of a test of which nothing is known: at most about so long; and of a whole file, on average."""
+"""A test file of which nothing is known takes about so long, on average."""
+UNKNOWN_TEST_S = 6.0
+"""Hardly a test takes longer."""
 
 END = "STATORWATCH_QUICK_END"
 SECONDS = "STATORWATCH_QUICK_SECONDS"
@@ -38,7 +41,7 @@ def within(tests: Sequence[Reached], seconds: Mapping[str, float], budget_s: flo
     left = (budget_s - START_S) * PROCESSES
     chosen = []
     for one in tests:
-        needed = taken.get(one.file, UNKNOWN_S)
+        needed = PROCESSES * COLLECT_S + taken.get(one.file, UNKNOWN_S)
         if needed <= left:
             left -= needed
             chosen.append(one)
@@ -53,6 +56,7 @@ class Budget:
         self._end_s = end_s
         self._before = read_seconds(path)
         self._taken: defaultdict[str, float] = defaultdict(float)
+        self._skipped: set[str] = set()
 
     @pytest.hookimpl(trylast=True)
     def pytest_collection_modifyitems(self, config: pytest.Config, items: list[pytest.Item]) -> None:
@@ -66,7 +70,9 @@ class Budget:
             pytest.skip(NO_TIME)
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
-        if report.outcome != "skipped":
+        if report.skipped:
+            self._skipped.add(report.nodeid)
+        elif report.nodeid not in self._skipped:
             self._taken[report.nodeid] += report.duration
 
     @pytest.hookimpl(trylast=True)

@@ -1,6 +1,10 @@
 """Which tests a change is followed by: nearest first, as many as the time allows."""
 
+import json
+import os
 import subprocess
+import sys
+import time
 from pathlib import Path
 
 import grimp
@@ -8,7 +12,7 @@ import pytest
 
 from tests.docs.pages import ROOT
 from tests.quick.__main__ import reached_by
-from tests.quick.budget import START_S, UNKNOWN_S, within
+from tests.quick.budget import COLLECT_S, END, PROCESSES, SECONDS, START_S, UNKNOWN_S, within
 from tests.quick.changes import changed_files, changed_modules, module_of
 from tests.quick.reach import Reached, imports_of, reached_tests
 
@@ -80,7 +84,7 @@ def test_time_goes_to_the_nearest_that_fit() -> None:
     tests = [Reached(f"tests/test_{name}.py", 1) for name in ("a", "b", "c", "new")]
     seconds = {"tests/test_a.py::one": 4.0, "tests/test_a.py::two": 3.0, "tests/test_b.py::one": 90.0}
     seconds |= {"tests/test_c.py::one": 1.0}
-    chosen = within(tests, seconds, START_S + (8 + UNKNOWN_S) / 2)
+    chosen = within(tests, seconds, START_S + (8.0 + UNKNOWN_S) / PROCESSES + 3 * COLLECT_S)
     assert [one.file for one in chosen] == ["tests/test_a.py", "tests/test_c.py", "tests/test_new.py"]
     assert within(tests, seconds, START_S) == []
 
@@ -120,3 +124,48 @@ def test_a_file_of_this_tree_is_followed_by_tests_of_its_room(file: str, nearest
     assert module_of(found[0].file)
     assert found[0].file.startswith(nearest)
     assert [one.distance for one in found] == sorted(one.distance for one in found)
+
+
+def test_no_test_begins_too_late_and_what_ran_is_noted(tmp_path: Path) -> None:
+    """In a real run: one of three tests would take too long, by what it took before."""
+    (tmp_path / "test_b.py").write_text("def test_long(): pass\ndef test_short(): pass\n")
+    (tmp_path / "test_a.py").write_text("def test_last(): pass\n")
+    kept = tmp_path / "kept" / "seconds.json"
+    kept.parent.mkdir()
+    kept.write_text(
+        '{"test_b.py::test_long": 1000, "test_b.py::test_short": 0.1, "test_a.py::test_last": 0.1}'
+    )
+    plugin = [
+        "-p",
+        "tests.quick.budget",
+        "-p",
+        "no:cacheprovider",
+        "-n",
+        "0",
+        "-v",
+        "--rootdir",
+        str(tmp_path),
+    ]
+    environment = {
+        **os.environ,
+        SECONDS: str(kept),
+        END: str(time.time() + 100),
+        "PYTHONPATH": path_of_tests(),
+    }
+    ended = subprocess.run(
+        [sys.executable, "-m", "pytest", "-c", os.devnull, *plugin, "test_b.py", "test_a.py"],
+        cwd=tmp_path, env=environment, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    lines = [line.split()[:2] for line in ended.stdout.splitlines() if "::" in line]
+    assert lines == [
+        ["test_b.py::test_long", "SKIPPED"],
+        ["test_b.py::test_short", "PASSED"],
+        ["test_a.py::test_last", "PASSED"],
+    ]
+    seconds = json.loads(kept.read_text())
+    assert seconds["test_b.py::test_long"] == 1000
+    assert seconds["test_a.py::test_last"] < 0.1
+
+
+def path_of_tests() -> str:
+    return os.pathsep.join((str(ROOT), os.environ.get("PYTHONPATH", "")))
