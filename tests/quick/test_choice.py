@@ -84,7 +84,7 @@ def test_time_goes_to_the_nearest_that_fit() -> None:
     tests = [Reached(f"tests/test_{name}.py", 1) for name in ("a", "b", "c", "new")]
     seconds = {"tests/test_a.py::one": 4.0, "tests/test_a.py::two": 3.0, "tests/test_b.py::one": 90.0}
     seconds |= {"tests/test_c.py::one": 1.0}
-    chosen = within(tests, seconds, START_S + (8.0 + UNKNOWN_S) / PROCESSES + 3 * COLLECT_S)
+    chosen = within(tests, seconds, START_S + (8.5 + UNKNOWN_S) / PROCESSES + 3 * COLLECT_S)
     assert [one.file for one in chosen] == ["tests/test_a.py", "tests/test_c.py", "tests/test_new.py"]
     assert within(tests, seconds, START_S) == []
 
@@ -135,27 +135,13 @@ def test_no_test_begins_too_late_and_what_ran_is_noted(tmp_path: Path) -> None:
     kept.write_text(
         '{"test_b.py::test_long": 1000, "test_b.py::test_short": 0.1, "test_a.py::test_last": 0.1}'
     )
-    plugin = [
-        "-p",
-        "tests.quick.budget",
-        "-p",
-        "no:cacheprovider",
-        "-n",
-        "0",
-        "-v",
-        "--rootdir",
-        str(tmp_path),
-    ]
-    environment = {
-        **os.environ,
-        SECONDS: str(kept),
-        END: str(time.time() + 100),
-        "PYTHONPATH": path_of_tests(),
-    }
+    path = os.pathsep.join((str(ROOT), os.environ.get("PYTHONPATH", "")))
+    environment = {**os.environ, "PYTHONPATH": path, SECONDS: str(kept), END: str(time.time() + 100)}
+    command = [sys.executable, "-m", "pytest", "--rootdir", str(tmp_path), "-c", os.devnull, "-n", "0", "-v"]
+    command += ["-p", "tests.quick.budget", "-p", "no:cacheprovider", "test_b.py", "test_a.py"]
     ended = subprocess.run(
-        [sys.executable, "-m", "pytest", "-c", os.devnull, *plugin, "test_b.py", "test_a.py"],
-        cwd=tmp_path, env=environment, capture_output=True, text=True, check=False,
-    )  # fmt: skip
+        command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False
+    )
     lines = [line.split()[:2] for line in ended.stdout.splitlines() if "::" in line]
     assert lines == [
         ["test_b.py::test_long", "SKIPPED"],
@@ -165,7 +151,3 @@ def test_no_test_begins_too_late_and_what_ran_is_noted(tmp_path: Path) -> None:
     seconds = json.loads(kept.read_text())
     assert seconds["test_b.py::test_long"] == 1000
     assert seconds["test_a.py::test_last"] < 0.1
-
-
-def path_of_tests() -> str:
-    return os.pathsep.join((str(ROOT), os.environ.get("PYTHONPATH", "")))
