@@ -16,6 +16,7 @@ RUN /opt/statorwatch/bin/pip install --require-hashes --requirement requirements
 COPY . .
 # What builds the wheel, pinned too: pip up to 25.2 reads the first of the two for it, later ones the second.
 RUN echo "setuptools==84.2.1" > build-constraints.txt \
+ && cat constraints.txt >> build-constraints.txt \
  && PIP_CONSTRAINT=/src/build-constraints.txt PIP_BUILD_CONSTRAINT=/src/build-constraints.txt \
     python -m pip wheel --no-deps --wheel-dir /wheels . \
  && /opt/statorwatch/bin/pip install --no-deps /wheels/*.whl \

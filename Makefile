@@ -1,4 +1,4 @@
-# make install | demo | test | campaigns | test-all | coverage | lint | bench | fuzz SECONDS=60 | interop [LIBIEC61850=TREE]    (PYTHON=python3.11 make install: another interpreter)
+# make install | site | demo | quick | test | campaigns | test-all | coverage | lint | bench | fuzz SECONDS=60 | interop [LIBIEC61850=TREE]    (PYTHON=python3.11 make install: another interpreter)
 # make chaos SEED=1 MINUTES=2 RECORDINGS=300 RELAYS=12 [FAULTS=1] [DATABASE=postgresql] [JSON=FILE] [DATA=DIR]     (faults of all kinds: docs/evidence/track-record.md)
 # make bench [QUICK=1] [DATA=FOLDER]     (DATA: measured recordings, for docs/evidence/condition.md)
 # make corpus DIR=FOLDER     (how recordings and SCL files of a folder are read: docs/evidence/corpus.md)
@@ -9,6 +9,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 STAMP := .venv/.installed
 WARM := .venv/.compiled
+SITE := service/web/help/site
 # Matrices are small here: threads of the linear algebra library only take cores from the tests' own processes.
 export OPENBLAS_NUM_THREADS ?= 1
 # Tests start thousands of processes: none of them is to compile our modules anew, which some images ask for.
@@ -18,10 +19,10 @@ MADE_PAGES := $(foreach page,architecture command alarm audit role quantity,test
 # docker compose where its engine answers, else nothing; COMPOSE="podman-compose" make compose-test: another one
 COMPOSE ?= $(shell docker compose version >/dev/null 2>&1 && docker info >/dev/null 2>&1 && echo docker compose)
 
-.PHONY: install demo test campaigns test-all containers coverage hostile chaos compose-test compose-test-hosts lint docs client bench corpus interop fuzz lock advisories audit clean
+.PHONY: install site demo quick test campaigns test-all containers coverage hostile chaos compose-test compose-test-hosts lint docs client bench corpus interop fuzz lock advisories audit clean
 .DEFAULT_GOAL := install
 
-install: $(WARM)
+install: $(WARM) $(SITE)/index.html
 
 $(BIN)/python:
 	sh .ci/make-venv "$(PYTHON)"
@@ -38,8 +39,18 @@ $(WARM): $(STAMP) $(wildcard core/machines/*.py core/diagnosis/*.py core/conditi
 	$(BIN)/python -c 'import core.warm_up, ied_sim; core.warm_up.warm_up(); ied_sim.warm_up()'
 	touch $@
 
+# The documentation as the service shows it under /help; a link that leads nowhere is an error.
+site: $(SITE)/index.html
+
+$(SITE)/index.html: $(STAMP) mkdocs.yml release/help_site.py release/help_hooks.py $(shell find docs -type f)
+	$(BIN)/python -m release site
+
 demo: install
 	@$(BIN)/mcc demo
+
+# What a change since main can break most directly, within a minute: make quick [SINCE=COMMIT] [SECONDS=60]
+quick: install
+	$(BIN)/python -m tests.quick $(if $(SINCE),--since $(SINCE)) $(if $(SECONDS),--seconds $(SECONDS))
 
 # What a change can break, within minutes.
 test: install
@@ -136,4 +147,4 @@ audit: install
 	$(BIN)/python -m release audit
 
 clean:
-	rm -rf .venv build dist *.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf .venv $(SITE) build dist *.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis

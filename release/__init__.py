@@ -1,1 +1,1 @@
-"""What is looked at and made for a release: pinned packages, advisories about them, the bill of materials."""
+"""What a release needs: pinned packages, advisories about them, the bill of materials, the help pages."""

@@ -1,4 +1,4 @@
-"""`python -m release advisories | audit`: fetch known advisories; compare the pinned packages with them."""
+"""`python -m release advisories | audit | site`: fetch advisories; look for them in pins; make help pages."""
 
 import json
 import sys
@@ -9,6 +9,7 @@ from pathlib import Path
 import httpx
 
 from release.advisories import AdvisoryError, affected, fetch, read
+from release.help_site import FOLDER, HelpSiteError, build
 from release.pins import read_pins
 
 ROOT = Path(__file__).parents[1]
@@ -18,6 +19,8 @@ PINNED = ("constraints.txt", "requirements.txt")
 
 def main(command: str) -> int:
     """Return the exit code: 0 where all is well."""
+    if command == "site":
+        return _site()
     pins = [pin for name in PINNED for pin in read_pins(ROOT / name)]
     pins = list({(pin.name, pin.version): pin for pin in pins}.values())
     try:
@@ -37,6 +40,15 @@ def main(command: str) -> int:
     return 1 if found else 0
 
 
+def _site() -> int:
+    try:
+        build(ROOT, ROOT / FOLDER)
+    except HelpSiteError as error:
+        print(f"site: {error}", file=sys.stderr)
+        return 1
+    return 0
+
+
 def accepted() -> dict[str, str]:
     """Why advisories do not concern us, by their ids."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
@@ -45,6 +57,6 @@ def accepted() -> dict[str, str]:
 
 
 if __name__ == "__main__":
-    if sys.argv[1:] not in (["advisories"], ["audit"]):
-        sys.exit("usage: python -m release advisories | audit")
+    if sys.argv[1:] not in (["advisories"], ["audit"], ["site"]):
+        sys.exit("usage: python -m release advisories | audit | site")
     sys.exit(main(sys.argv[1]))

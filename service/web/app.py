@@ -1,5 +1,7 @@
 """Puts the pages on top of the API."""
 
+from importlib.resources.abc import Traversable
+
 from fastapi import FastAPI
 
 from service.api.app import create_app
@@ -7,6 +9,7 @@ from service.api.context import ApiContext
 from service.web.alarms import routes as alarms
 from service.web.audit import routes as audit
 from service.web.fleet import routes as fleet
+from service.web.help.pages import FOLDER, HelpPages
 from service.web.html_problems import HtmlProblems
 from service.web.live import routes as live
 from service.web.load import routes as load
@@ -49,8 +52,11 @@ ROOMS = (
 """Each has the routes of some pages in its `router`."""
 
 
-def create_site(context: ApiContext) -> FastAPI:
-    """Return the API and the pages as one ASGI application, for a plant that is in the database already."""
+def create_site(context: ApiContext, *, help_folder: Traversable = FOLDER) -> FastAPI:
+    """Return the API and the pages as one ASGI application, for a plant that is in the database already.
+
+    help_folder: where the help pages are, as MkDocs made them.
+    """
     app = create_app(
         context,
         pages=[room.router for room in ROOMS],
@@ -59,6 +65,7 @@ def create_site(context: ApiContext) -> FastAPI:
     )
     live.install_live(app, context)
     fleet.install_fleet(app, context)
+    app.add_middleware(HelpPages, folder=help_folder)
     app.add_middleware(HtmlProblems)
     app.add_middleware(StaticFiles, tree=static_tree())
     app.add_middleware(SecurityHeaders, proxy=context.settings.access.proxy)

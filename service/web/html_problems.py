@@ -20,6 +20,8 @@ from service.web.rendering import html_response, rendered
 API: Final = "/api/"
 LOGIN: Final = "/login"
 LONGEST_BODY: Final = 1_000_000
+KEPT: Final = frozenset(("allow", "retry-after"))
+"""What an answer in place of a problem document says too."""
 
 _PLACE: Final = re.compile(r"\b(?:body|query|path)\.(?:[a-z_0-9]+\.)*?([a-z_]+)(?:\.\d+)?:")
 FIELDS: Final = {
@@ -41,6 +43,7 @@ WHAT_TO_DO: Final = {
     HTTPStatus.CONFLICT: "Load the page again to see how things are now.",
     HTTPStatus.UNPROCESSABLE_ENTITY: "Go back, correct it and send it again.",
     HTTPStatus.TOO_MANY_REQUESTS: "Wait a minute, then try again.",
+    HTTPStatus.NOT_IMPLEMENTED: "All else works without it. Tell who runs the service.",
     HTTPStatus.SERVICE_UNAVAILABLE: "Nothing was changed. Try again in a few seconds.",
     HTTPStatus.INTERNAL_SERVER_ERROR: "The service's log says more. Try again, or tell who runs the service.",
 }
@@ -107,9 +110,9 @@ def _answer(scope: Scope, headers: Headers, start: Message, body: bytes) -> Resp
         answer.headers["HX-Reswap"] = "innerHTML"
         answer.headers["HX-Reselect"] = ".message"  # whatever part of a page was asked for
         answer.headers["HX-Push-Url"] = "false"  # the page stays where it is
-    retry_after = Headers(raw=start["headers"]).get("retry-after")
-    if retry_after is not None:
-        answer.headers["Retry-After"] = retry_after
+    said = Headers(raw=start["headers"])
+    for name in KEPT & set(said):
+        answer.headers[name] = said[name]
     return answer
 
 

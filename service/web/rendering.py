@@ -13,6 +13,7 @@ from starlette.responses import HTMLResponse
 from service.condition.wording import cause
 from service.web import words
 from service.web.addresses import address, path_segment
+from service.web.help.passages import passage
 from service.web.static_files import static_tree
 from service.web.text_marks import with_marks
 
@@ -50,6 +51,7 @@ def environment() -> Environment:
     made.globals |= {
         "static": static_tree().address,
         "address": address,
+        "passage": passage,
         "htmx_config": HTMX_CONFIG,
         "STATE_WORDS": words.STATE_WORDS,
     }

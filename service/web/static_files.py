@@ -7,7 +7,7 @@ the tree they find one another by relative addresses.
 import gzip
 import hashlib
 import mimetypes
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
@@ -51,24 +51,25 @@ class StaticTree:
 @cache
 def static_tree() -> StaticTree:
     """Read the files that came with the package."""
-    found = dict(sorted(_files(files("service.web") / "static", "")))
+    ways = dict(entries(files("service.web") / "static"))
+    found = {way: read(ways[way]) for way in sorted(ways)}
     digest = hashlib.sha256()
     for way, file in found.items():
         digest.update(f"{way}\0{len(file.plain)}\0".encode() + file.plain)
     return StaticTree(digest.hexdigest()[:12], found)
 
 
-def _files(folder: Traversable, way: str) -> list[tuple[str, StaticFile]]:
-    found: list[tuple[str, StaticFile]] = []
+def entries(folder: Traversable, way: str = "") -> Iterator[tuple[str, Traversable]]:
+    """Yield the files below a folder, each with its way from there."""
     for entry in folder.iterdir():
         if entry.is_dir():
-            found += _files(entry, f"{way}{entry.name}/")
+            yield from entries(entry, f"{way}{entry.name}/")
         elif not entry.name.startswith((".", "_")):
-            found.append((f"{way}{entry.name}", _file(entry)))
-    return found
+            yield f"{way}{entry.name}", entry
 
 
-def _file(entry: Traversable) -> StaticFile:
+def read(entry: Traversable) -> StaticFile:
+    """Read a file, and compress it where that makes it smaller."""
     plain = entry.read_bytes()
     suffix = entry.name[entry.name.rfind(".") :]
     media_type = TYPES.get(suffix) or mimetypes.guess_type(entry.name)[0] or "text/plain"

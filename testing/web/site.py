@@ -4,6 +4,7 @@ import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
+from importlib.resources.abc import Traversable
 from pathlib import Path
 
 from fastapi import FastAPI
@@ -20,6 +21,7 @@ from service.storage import Repository, connect
 from service.storage.errors import UserExistsError
 from service.storage.records import Actor, Role
 from service.web.app import create_site
+from service.web.help.pages import FOLDER
 from testing.service.accounts import EVERYTHING, TESTS
 from testing.service.listening import LONGEST_S, listening
 from testing.web.watched_page import WatchedPage
@@ -120,11 +122,13 @@ def running_site(
     motors: Mapping[str, Motor] | None = None,
     host: str = "127.0.0.1",
     port: int = 0,
+    help_folder: Traversable = FOLDER,
     **settings: object,
 ) -> Iterator[Site]:
     """The site of a data directory with a migrated database, in this process.
 
-    motors: as the motors file has them, by name. host: what pages are asked for at. port: 0 for any.
+    motors: as the motors file has them, by name.  host: what pages are asked for at.  port: 0 for any.
+    help_folder: where the help pages were made.
     """
     engine = connect(sqlite_url(data))
     context = ApiContext(
@@ -134,7 +138,7 @@ def running_site(
         motors=dict(motors or {}),
     )
     try:
-        app = create_site(context)
+        app = create_site(context, help_folder=help_folder)
         with listening(app, connection_limits(context.settings), port=port) as port:
             site = Site(f"http://{host}:{port}", context, app, browser)
             try:

@@ -38,6 +38,8 @@ def test_what_builds_the_wheel_is_pinned_too() -> None:
     name, _, version = requirement.partition("==")
     assert (echo, name) == ("echo", "setuptools")
     assert version.replace(".", "").isdecimal()
+    (added,) = commands_running(">>", "build-constraints.txt")
+    assert added[:2] == ["cat", "constraints.txt"]
     (wheel,) = commands_running("pip", "wheel")
     for setting in ("PIP_CONSTRAINT", "PIP_BUILD_CONSTRAINT"):
         assert f"{setting}=/src/build-constraints.txt" in wheel[: wheel.index("python")]

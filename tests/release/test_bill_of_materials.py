@@ -1,4 +1,4 @@
-"""The bill of materials: valid, complete, and in the wheel."""
+"""The bill of materials: valid, complete, and in the wheel; so are the help pages."""
 
 import json
 import shutil
@@ -11,11 +11,12 @@ from cyclonedx.schema import SchemaVersion
 from cyclonedx.validation.json import JsonStrictValidator
 
 from release.bill_of_materials import NAME, SPECIFICATION, bill_of_materials
+from release.help_site import FOLDER
 from release.pins import read_pins
 from tests.docs.pages import ROOT
 
-BUILT_FROM = ("client", "core", "ied_sim", "mms", "release", "scl", "service")
-FILES = ("LICENSE", "README.md", "pyproject.toml", "requirements.txt", "setup.py")
+BUILT_FROM = ("client", "core", "docs", "ied_sim", "mms", "release", "scl", "service")
+FILES = ("LICENSE", "README.md", "mkdocs.yml", "pyproject.toml", "requirements.txt", "setup.py")
 
 
 def test_the_bill_is_valid_cyclonedx() -> None:
@@ -33,10 +34,10 @@ def test_the_bill_names_each_package_with_its_hashes() -> None:
     assert "pkg:pypi/pyiec61850-ng@1.6.1.10" in {one["purl"] for one in components}
 
 
-def test_the_wheel_has_the_bill(tmp_path: Path) -> None:
+def test_the_wheel_has_the_bill_and_the_help_pages(tmp_path: Path) -> None:
     tree = tmp_path / "tree"
     for folder in BUILT_FROM:
-        left_out = shutil.ignore_patterns("__pycache__", "*.nb[ci]", "build", "*.egg-info")
+        left_out = shutil.ignore_patterns("__pycache__", "*.nb[ci]", "build", "*.egg-info", "site")
         shutil.copytree(ROOT / folder, tree / folder, ignore=left_out)
     for file in FILES:
         shutil.copy(ROOT / file, tree / file)
@@ -46,6 +47,7 @@ def test_the_wheel_has_the_bill(tmp_path: Path) -> None:
     with ZipFile(wheel) as archive:
         assert archive.read(f"service/{NAME}").decode() == bill_of_materials(ROOT)
         assert not [name for name in archive.namelist() if name.startswith("release/")]
+        assert b'id="of-a-record"' in archive.read(f"{FOLDER}/reference/losses.html")
 
 
 def test_the_image_is_built_from_what_makes_the_bill() -> None:

@@ -137,7 +137,8 @@ FORMS = """() => [...document.querySelectorAll("form")].flatMap((form) =>
         "POST", new URL(one.getAttribute("hx-post"), location.href).pathname]))"""
 LINKS = """() => [...document.querySelectorAll("a[href]")].map((one) => new URL(one.href))
     .filter((url) => url.origin === location.origin && !url.pathname.startsWith("/api/")
-        && !url.pathname.startsWith("/static/")).map((url) => url.pathname)"""
+        && !url.pathname.startsWith("/static/")
+        && !url.pathname.startsWith("/help/")).map((url) => url.pathname)"""
 
 
 def is_page_of(site: Site, path: str) -> bool:
