@@ -402,6 +402,82 @@ class AsyncOperations:
         )
         return answer
 
+    async def get_planned_stop(self, motor: str) -> models.PlannedStop:
+        """Return when a motor stops next: by its own plan, or by that of its site where it is earlier.
+
+        Parameters
+        ----------
+        motor
+            Name of the motor.
+        """
+        answer: models.PlannedStop = await self._document(
+            Request("GET", f"/api/v1/motors/{segment(motor)}/planned-stop")
+        )
+        return answer
+
+    async def plan_stop(self, motor: str, document: models.StopRequest) -> models.PlannedStop:
+        """Plan when a motor stops next, in place of an earlier plan. Its condition says whether it may run so long.
+
+        Parameters
+        ----------
+        motor
+            Name of the motor.
+        document
+            What is sent.
+        """
+        answer: models.PlannedStop = await self._document(
+            Request("PUT", f"/api/v1/motors/{segment(motor)}/planned-stop", json=document)
+        )
+        return answer
+
+    async def cancel_stop(self, motor: str) -> None:
+        """Drop the plan of a motor's stop; that of its site stays.
+
+        Parameters
+        ----------
+        motor
+            Name of the motor.
+        """
+        await self._done(Request("DELETE", f"/api/v1/motors/{segment(motor)}/planned-stop"))
+
+    async def get_planned_stop_of_site(self, site: str) -> models.PlannedStop:
+        """Return when all motors of a site stop next.
+
+        Parameters
+        ----------
+        site
+            Name of the site.
+        """
+        answer: models.PlannedStop = await self._document(
+            Request("GET", f"/api/v1/sites/{segment(site)}/planned-stop")
+        )
+        return answer
+
+    async def plan_stop_of_site(self, site: str, document: models.StopRequest) -> models.PlannedStop:
+        """Plan when all motors of a site stop next, in place of an earlier plan.
+
+        Parameters
+        ----------
+        site
+            Name of the site.
+        document
+            What is sent.
+        """
+        answer: models.PlannedStop = await self._document(
+            Request("PUT", f"/api/v1/sites/{segment(site)}/planned-stop", json=document)
+        )
+        return answer
+
+    async def cancel_stop_of_site(self, site: str) -> None:
+        """Drop the plan of a site's stop; those of its motors stay.
+
+        Parameters
+        ----------
+        site
+            Name of the site.
+        """
+        await self._done(Request("DELETE", f"/api/v1/sites/{segment(site)}/planned-stop"))
+
     async def get_rotor(self, motor: str) -> models.RotorCondition:
         """Return the condition of a motor's rotor, from all its recordings.
 

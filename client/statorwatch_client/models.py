@@ -111,6 +111,8 @@ AuditAction: TypeAlias = Literal[
     "note-added",
     "note-withdrawn",
     "reference-restarted",
+    "stop-planned",
+    "stop-cancelled",
     "quarantine-released",
     "alarm-acknowledged",
     "alarm-shelved",
@@ -424,11 +426,14 @@ class Forecast(TypedDict):
     Days from the latest record until the level reaches `limit`: likely not before, middle, likely by then.
 
     One chance in ten each that it is earlier than the first or later than the last. `days` is null where the
-    records show no trend towards the limit.
+    records show no trend towards the limit. chances: probability that the level has reached the limit 0,
+    0.25, 0.5, 1, 2, 3, 5, 7, 10, 14, 21, 30, 45, 60, 90, 120, 180, 270, 365, 545, 730, 1095, 1825 and 3650
+    days after that record; null where too few records tell.
     """
 
     limit: float | None
     days: tuple[float, float, float] | None
+    chances: NotRequired[list[float] | None]
 
 
 Format: TypeAlias = Literal["csv", "xlsx", "parquet"]
@@ -650,14 +655,11 @@ class LoadImport(TypedDict):
 class LoginRequest(TypedDict):
     """
     Who logs in. code: of their authenticator app, or a recovery code, where they have a second factor.
-
-    passkey: in place of the code, what a browser's `PublicKeyCredential.toJSON()` gives, as text.
     """
 
     name: str
     password: str
     code: NotRequired[str | None]
-    passkey: NotRequired[str | None]
 
 
 class LoginWays(TypedDict):
@@ -743,18 +745,6 @@ class Losses(TypedDict):
 
 
 MeasurementSource: TypeAlias = Literal["load-profile", "polled"]
-
-
-class NewPasskey(TypedDict):
-    """
-    A passkey that was added. recovery_codes: for who had no second factor, shown this once.
-    """
-
-    id: str
-    label: str
-    created_time: str
-    used_time: str | None
-    recovery_codes: list[str]
 
 
 class NewPassword(TypedDict):
@@ -919,42 +909,17 @@ Part: TypeAlias = Literal[
 ]
 
 
-class Passkey(TypedDict):
+class PartUntilStop(TypedDict):
     """
-    A passkey of a user. used_time: when it last let them in.
-    """
+    What is known of a part until the planned stop. probability: null where it is not known.
 
-    id: str
-    label: str
-    created_time: str
-    used_time: str | None
-
-
-class PasskeyAnswer(TypedDict):
-    """
-    What a device has made: `PublicKeyCredential.toJSON()`, as text. label: what its owner calls it.
+    is_beyond: it is beyond its limit already.
     """
 
-    label: str
-    answer: str
-
-
-class PasskeyOptions(TypedDict):
-    """
-    What browsers ask a device with: PublicKeyCredentialCreationOptionsJSON, or ...RequestOptionsJSON.
-
-    `PublicKeyCredential.parseCreationOptionsFromJSON` and `parseRequestOptionsFromJSON` read them.
-    """
-
-    options: dict[str, Any]
-
-
-class Passkeys(TypedDict):
-    """
-    All passkeys of a user.
-    """
-
-    items: list[Passkey]
+    part: Part
+    probability: float | None
+    reason: str
+    is_beyond: bool
 
 
 class PasswordChange(TypedDict):
@@ -1527,6 +1492,17 @@ class Status(TypedDict):
     parts: NotRequired[dict[str, str]]
 
 
+StopOf: TypeAlias = Literal["motor", "site"]
+
+
+class StopRequest(TypedDict):
+    """
+    When something stops.
+    """
+
+    time: str
+
+
 class SupplyFigures(TypedDict):
     """
     Figures of the supply and of what the motor draws from it, over one recording.
@@ -1742,6 +1718,23 @@ TrackingState: TypeAlias = Literal["steady", "drifting", "undetermined"]
 
 
 TriggerAction: TypeAlias = Literal["set-reset", "pulse"]
+
+
+class UntilStop(TypedDict):
+    """
+    Whether a motor holds until its planned stop, from what is seen of it today.
+
+    of: whether the stop is the motor's own or its site's. probability: that no part passes its limit before;
+    0 where one is beyond it already, null where nothing can be said: `reasons` say why. likely_until: until
+    then the probability is 90 % and more; null where it is not known, or beyond ten years.
+    """
+
+    stop: str
+    of: StopOf
+    probability: float | None
+    likely_until: str | None
+    parts: list[PartUntilStop]
+    reasons: list[str]
 
 
 Urgency: TypeAlias = Literal["today", "within-days", "within-weeks", "next-stop", "none"]
@@ -2213,7 +2206,6 @@ class ListedRecording(TypedDict):
     duration_s: float | None
     pre_trigger_s: float | None
     parts: list[str] | None
-    copy_of: str | None
     announced_time: str
     fetched_time: str | None
     recorded_time: str | None
@@ -2467,6 +2459,15 @@ class PartOfMotor(TypedDict):
     explained_by: Part | None
 
 
+class PlannedStop(TypedDict):
+    """
+    When a motor stops next, and whether the motor or its site was planned so; null without a plan.
+    """
+
+    time: str | None
+    of: StopOf | None
+
+
 class Recording(TypedDict):
     """
     A recording. `recorded_time` is the trigger time written in the record, known once it was read.
@@ -2475,7 +2476,6 @@ class Recording(TypedDict):
     operation_remark: why the motor's parameters cannot be estimated from this start.
     duration_s: its length; pre_trigger_s: how much of it is before the trigger; null before it was read.
     parts: the recordings that it was joined from (source joined); null of others.
-    copy_of: the recording of the same event, with values as fine or finer, that counts in its place.
     That time is the relay's; `clock_...` is the latest comparison of its clock when the recording was stored,
     null where that was not made within an hour of it.
     """
@@ -2497,7 +2497,6 @@ class Recording(TypedDict):
     duration_s: float | None
     pre_trigger_s: float | None
     parts: list[str] | None
-    copy_of: str | None
     announced_time: str
     fetched_time: str | None
     recorded_time: str | None
@@ -2799,6 +2798,8 @@ class Condition(TypedDict):
 class ConditionDetails(TypedDict):
     """
     A condition with what was said from each of the latest records on, oldest first.
+
+    until_stop: whether the motor holds until its planned stop; null where none is planned.
     """
 
     motor: str
@@ -2826,6 +2827,7 @@ class ConditionDetails(TypedDict):
     urgency: NotRequired[Urgency]
     causes: NotRequired[list[LikelyCause]]
     parts: NotRequired[list[PartOfMotor]]
+    until_stop: UntilStop | None
     history: list[ConditionPoint]
 
 
@@ -3024,8 +3026,6 @@ class PageTrendPoint(TypedDict):
 class RecordingDetails(TypedDict):
     """
     A recording with its files and its latest diagnosis.
-
-    copies: recordings of the same event in whose place it counts.
     """
 
     clock_offset_s: float | None
@@ -3045,11 +3045,9 @@ class RecordingDetails(TypedDict):
     duration_s: float | None
     pre_trigger_s: float | None
     parts: list[str] | None
-    copy_of: str | None
     announced_time: str
     fetched_time: str | None
     recorded_time: str | None
-    copies: list[str]
     files: list[RecordingFile]
     diagnosis: Diagnosis | None
 

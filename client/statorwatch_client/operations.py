@@ -400,6 +400,82 @@ class Operations:
         )
         return answer
 
+    def get_planned_stop(self, motor: str) -> models.PlannedStop:
+        """Return when a motor stops next: by its own plan, or by that of its site where it is earlier.
+
+        Parameters
+        ----------
+        motor
+            Name of the motor.
+        """
+        answer: models.PlannedStop = self._document(
+            Request("GET", f"/api/v1/motors/{segment(motor)}/planned-stop")
+        )
+        return answer
+
+    def plan_stop(self, motor: str, document: models.StopRequest) -> models.PlannedStop:
+        """Plan when a motor stops next, in place of an earlier plan. Its condition says whether it may run so long.
+
+        Parameters
+        ----------
+        motor
+            Name of the motor.
+        document
+            What is sent.
+        """
+        answer: models.PlannedStop = self._document(
+            Request("PUT", f"/api/v1/motors/{segment(motor)}/planned-stop", json=document)
+        )
+        return answer
+
+    def cancel_stop(self, motor: str) -> None:
+        """Drop the plan of a motor's stop; that of its site stays.
+
+        Parameters
+        ----------
+        motor
+            Name of the motor.
+        """
+        self._done(Request("DELETE", f"/api/v1/motors/{segment(motor)}/planned-stop"))
+
+    def get_planned_stop_of_site(self, site: str) -> models.PlannedStop:
+        """Return when all motors of a site stop next.
+
+        Parameters
+        ----------
+        site
+            Name of the site.
+        """
+        answer: models.PlannedStop = self._document(
+            Request("GET", f"/api/v1/sites/{segment(site)}/planned-stop")
+        )
+        return answer
+
+    def plan_stop_of_site(self, site: str, document: models.StopRequest) -> models.PlannedStop:
+        """Plan when all motors of a site stop next, in place of an earlier plan.
+
+        Parameters
+        ----------
+        site
+            Name of the site.
+        document
+            What is sent.
+        """
+        answer: models.PlannedStop = self._document(
+            Request("PUT", f"/api/v1/sites/{segment(site)}/planned-stop", json=document)
+        )
+        return answer
+
+    def cancel_stop_of_site(self, site: str) -> None:
+        """Drop the plan of a site's stop; those of its motors stay.
+
+        Parameters
+        ----------
+        site
+            Name of the site.
+        """
+        self._done(Request("DELETE", f"/api/v1/sites/{segment(site)}/planned-stop"))
+
     def get_rotor(self, motor: str) -> models.RotorCondition:
         """Return the condition of a motor's rotor, from all its recordings.
 

@@ -19,7 +19,7 @@ from service.api.alarms import people as alarm_people
 from service.api.audit import trail as audit_trail
 from service.api.backups import routes as backups
 from service.api.classification import routes as classification
-from service.api.conditions import notes
+from service.api.conditions import notes, planned_stops
 from service.api.conditions import routes as conditions
 from service.api.context import ApiContext
 from service.api.exports import routes as exports
@@ -85,6 +85,7 @@ def create_app(
         motors,
         conditions,
         notes,
+        planned_stops,
         rotor_and_supply,
         tracking,
         classification,

@@ -17,6 +17,8 @@ class AuditAction(StrEnum):
     NOTE_ADDED = "note-added"
     NOTE_WITHDRAWN = "note-withdrawn"
     REFERENCE_RESTARTED = "reference-restarted"
+    STOP_PLANNED = "stop-planned"
+    STOP_CANCELLED = "stop-cancelled"
     QUARANTINE_RELEASED = "quarantine-released"
     ALARM_ACKNOWLEDGED = "alarm-acknowledged"
     ALARM_SHELVED = "alarm-shelved"
@@ -71,6 +73,8 @@ MEANINGS: Mapping[AuditAction, str] = {
     AuditAction.NOTE_ADDED: "Somebody wrote into a motor's logbook.",
     AuditAction.NOTE_WITHDRAWN: "Somebody let a note count no more.",
     AuditAction.REFERENCE_RESTARTED: "Somebody took a motor for healthy as it is.",
+    AuditAction.STOP_PLANNED: "Somebody planned when a motor or a site stops; `after` says when.",
+    AuditAction.STOP_CANCELLED: "Somebody dropped the plan of a stop.",
     AuditAction.QUARANTINE_RELEASED: "Somebody had a relay visited again; `before` is why it was set aside.",
     AuditAction.ALARM_ACKNOWLEDGED: "Somebody took notice of an alarm, with the comment in `after`.",
     AuditAction.ALARM_SHELVED: "Somebody set an alarm aside; `after` says until when, or until which value.",

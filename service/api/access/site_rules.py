@@ -26,6 +26,7 @@ NO_SITE: Final = "-"
 """It is about people, the service's life, or nobody in particular."""
 
 KEYS: Final[Mapping[str, AtSite]] = {
+    "/sites/{name}": AtSite.SITE,
     "/motors/{name}": AtSite.MOTOR,
     "/ieds/{name}": AtSite.RELAY,
     "/relays/{name}": AtSite.RELAY,

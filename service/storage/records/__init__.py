@@ -64,7 +64,7 @@ from service.storage.records.notifications import (
     Occurrence,
 )
 from service.storage.records.pages import Cursor, Page
-from service.storage.records.plant import IedEntry, MotorEntry, SiteEntry
+from service.storage.records.plant import IedEntry, MotorEntry, PlannedStop, SiteEntry, StopOf
 from service.storage.records.recordings import (
     RecordingEntry,
     RecordingFile,
@@ -174,6 +174,7 @@ __all__ = [
     "OldRecording",
     "Page",
     "Passkey",
+    "PlannedStop",
     "Quarantine",
     "RecordObservation",
     "RecordedStarts",
@@ -196,6 +197,7 @@ __all__ = [
     "SiteEntry",
     "StartEntry",
     "StartReference",
+    "StopOf",
     "SupplyEntry",
     "SupplyQuantity",
     "SwingEntry",

@@ -40,6 +40,7 @@ from service.storage.repository.motor_health import MotorHealthRows
 from service.storage.repository.motor_versions import MotorVersionRows
 from service.storage.repository.notifications import NotificationRows
 from service.storage.repository.overviews import OverviewRows
+from service.storage.repository.planned_stops import PlannedStopRows
 from service.storage.repository.plant import PlantRows
 from service.storage.repository.recordings.baselines import BaselineRows
 from service.storage.repository.recordings.copies import CopyRows
@@ -61,6 +62,7 @@ from service.storage.repository.state_counts import StateCounts
 
 class Repository(
     PlantRows,
+    PlannedStopRows,
     SiteRows,
     LinkRows,
     FindingsRows,

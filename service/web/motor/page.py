@@ -7,7 +7,7 @@ from typing import Final
 from core.diagnosis.verdict import Verdict
 from core.machines.parameters import MachineKind
 from core.units import NANOSECONDS_PER_DAY
-from service.api.conditions.documents import condition_document
+from service.api.conditions.documents import condition_document, until_stop_document
 from service.api.conditions.schemas import Condition
 from service.api.context import ApiContext
 from service.condition.staleness import stale_after_ns
@@ -28,6 +28,7 @@ from service.web.motor.measured import MeasuredValues, measured_values
 from service.web.motor.nameplate import KnownMotor, known_motor
 from service.web.motor.parameters import ParametersSection, parameters_section
 from service.web.motor.rotor import RotorSection, rotor_section
+from service.web.motor.stop import StopLine, stop_line
 from service.web.motor.supply import SupplySection, supply_section
 from service.web.motor.swings import SwingSection, swing_section
 from service.web.motor.trend import SPANS, TrendSpan, told, trend_chart
@@ -57,6 +58,7 @@ class MotorPage:
     health: MotorHealth
     condition: Condition
     verdict: MotorVerdict
+    stop: StopLine | None
     trend: MotorTrend
     answer: AnswerSection
     rotor: RotorSection
@@ -92,6 +94,7 @@ def motor_page(context: ApiContext, name: str, span: TrendSpan, now_ns: int) -> 
         verdict=motor_verdict(
             health, condition, now_ns, oldest_ns, None if known is None else known.motor.limits.fault_level
         ),
+        stop=stop_line(until_stop_document(repository, health.condition, now_ns, oldest_ns), now_ns),
         trend=_trend(repository, name, span, condition, known, now_ns),
         rotor=rotor_section(repository, name, MachineKind.CAGE if known is None else known.motor.kind),
         answer=answer_section(repository, name),

@@ -13,11 +13,13 @@ from core.units import NANOSECONDS_PER_SECOND
 from service.access.permissions import Permission
 from service.api.access.requirements import require
 from service.api.conditions.notes import keep_note
-from service.api.conditions.schemas import NoteRequest, RestartRequest, Withdrawal
+from service.api.conditions.planned_stops import keep_stop
+from service.api.conditions.schemas import NoteRequest, RestartRequest, StopRequest, Withdrawal
 from service.api.document import Name
 from service.api.problems import ProblemError
 from service.api.recordings.diagnoses import queue_diagnosis
 from service.api.recordings.diagnosis_schemas import DiagnosisRequest
+from service.storage.records import StopOf
 from service.storage.repository.sites import AtSite
 from service.web.addresses import address
 from service.web.forms import document_of_form
@@ -165,6 +167,31 @@ def undo_note(view: Looking, name: Name, note_id: UUID) -> Response:
     else:
         keep_note(view.context, name, note.kind, note.reason, by, note.on_behalf_of, note.time_ns)
     return _done(view, name, "undone")
+
+
+@router.post("/motors/{name}/planned-stop", dependencies=[require(Permission.NOTE)])
+def plan_stop(
+    view: Looking,
+    name: Name,
+    time: Annotated[str, Form(max_length=40)],
+    of: Annotated[StopOf, Form()] = StopOf.MOTOR,
+) -> Response:
+    """Plan when the motor, or its whole site, stops next."""
+    wanted = document_of_form(StopRequest, {"time": _utc(time)})
+    keep_stop(view.context, of, _named(view, name, of), wanted.time, view.asking.actor)
+    return _done(view, name, "stop-planned")
+
+
+@router.post("/motors/{name}/planned-stop/cancellation", dependencies=[require(Permission.NOTE)])
+def cancel_stop(view: Looking, name: Name, of: Annotated[StopOf, Form()] = StopOf.MOTOR) -> Response:
+    """Drop the plan of a stop, of the motor or of its site."""
+    keep_stop(view.context, of, _named(view, name, of), None, view.asking.actor)
+    return _done(view, name, "stop-cancelled")
+
+
+def _named(view: View, motor: str, of: StopOf) -> str:
+    """Return the name of what is meant: the motor, or its site. Who sees a motor may see its site."""
+    return motor if of is StopOf.MOTOR else view.context.repository.motor(motor).site
 
 
 def _utc(text: str) -> str:

@@ -114,6 +114,7 @@ def _things(repository: Repository, store: RecordingStore, name: str, its_relay:
     alarm = repository.raise_alarm(its_relay, AlarmKind.FILE_REFUSED, f"{name}.CFG", "outside", now_ns=NOW_NS)
     return There(
         {
+            AtSite.SITE: repository.motor(name).site,
             AtSite.MOTOR: name,
             AtSite.RELAY: its_relay,
             AtSite.RECORDING: recording,
@@ -197,7 +198,10 @@ def test_what_is_at_another_site_is_forbidden_to_every_role(places: Places) -> N
 def _of_nothing(path: str) -> str:
     """A path about things that there are not."""
     nothing = There(
-        {what: "NOBODY" if what in (AtSite.MOTOR, AtSite.RELAY) else str(uuid.UUID(int=1)) for what in AtSite}
+        {
+            what: "NOBODY" if what in (AtSite.SITE, AtSite.MOTOR, AtSite.RELAY) else str(uuid.UUID(int=1))
+            for what in AtSite
+        }
     )
     return nothing.path(path)
 

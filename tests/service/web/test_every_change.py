@@ -167,6 +167,14 @@ FORMS: Changes = {
         lambda it: it.client.post(f"{MOTOR}/notes/{it.note(kind='maintenance')}/undo"),
         "note-withdrawn",
     ),
+    "POST /motors/{name}/planned-stop": (
+        lambda it: it.client.post(f"{MOTOR}/planned-stop", data={"time": "2090-12-24T06:00"}),
+        "stop-planned",
+    ),
+    "POST /motors/{name}/planned-stop/cancellation": (
+        lambda it: it.client.post(f"{MOTOR}/planned-stop/cancellation", data={"of": "site"}),
+        "stop-cancelled",
+    ),
     "POST /motors/{name}/reports": (
         lambda it: it.client.post(f"{MOTOR}/reports", files={"report": ("SER.TXT", SER.encode())}),
         "report-imported",

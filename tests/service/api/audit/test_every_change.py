@@ -12,6 +12,7 @@ from tests.service.audited import API, MOTOR, PASSWORD, SHELVED, Changes, Prepar
 CHANGING = {"post", "put", "patch", "delete"}
 
 AGAIN = {"password": PASSWORD}
+SITE = "FACTORY_A"
 
 
 REQUESTS: Changes = {
@@ -30,6 +31,22 @@ REQUESTS: Changes = {
     "POST /api/v1/motors/{name}/reference": (
         lambda it: it.client.post(f"{MOTOR}/reference", json={"reason": "tested"}),
         "reference-restarted",
+    ),
+    "PUT /api/v1/motors/{name}/planned-stop": (
+        lambda it: it.client.put(f"{MOTOR}/planned-stop", json={"time": "2090-12-24"}),
+        "stop-planned",
+    ),
+    "DELETE /api/v1/motors/{name}/planned-stop": (
+        lambda it: it.client.delete(f"{MOTOR}/planned-stop"),
+        "stop-cancelled",
+    ),
+    "PUT /api/v1/sites/{name}/planned-stop": (
+        lambda it: it.client.put(f"{API}/sites/{SITE}/planned-stop", json={"time": "2090-12-24"}),
+        "stop-planned",
+    ),
+    "DELETE /api/v1/sites/{name}/planned-stop": (
+        lambda it: it.client.delete(f"{API}/sites/{SITE}/planned-stop"),
+        "stop-cancelled",
     ),
     "PUT /api/v1/motors/{name}/baseline": (
         lambda it: it.client.put(f"{MOTOR}/baseline", json=it.baseline()),
