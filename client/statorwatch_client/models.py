@@ -111,6 +111,8 @@ AuditAction: TypeAlias = Literal[
     "note-added",
     "note-withdrawn",
     "reference-restarted",
+    "inspection-added",
+    "inspection-withdrawn",
     "stop-planned",
     "stop-cancelled",
     "quarantine-released",
@@ -488,6 +490,17 @@ class Indicators(TypedDict):
     negative_sequence_impedance_ohm: float
     park_axis_ratio: float
     park_axis_angle_deg: float
+
+
+InspectionOutcome: TypeAlias = Literal["confirmed", "other-cause", "nothing-found"]
+
+
+class InspectionWithdrawal(TypedDict):
+    """
+    Why an inspection was wrong.
+    """
+
+    reason: str
 
 
 class Integration(TypedDict):
@@ -2174,6 +2187,75 @@ class ImportedStart(TypedDict):
     outcome: ReportOutcome
 
 
+class Inspection(TypedDict):
+    """
+    What an inspection of a motor found, beside what the service had said. Nothing is judged by it.
+
+    kind, finding: what was said. cause: what it was, where that is something else. pictures: how many, from
+    1 on. An inspection that was withdrawn does not count.
+    """
+
+    id: str
+    motor: str
+    time: str
+    kind: Kind
+    finding: str
+    outcome: InspectionOutcome
+    cause: str | None
+    text: str
+    alarm_id: str | None
+    pictures: int
+    by: str
+    on_behalf_of: str | None
+    made_time: str
+    withdrawn_time: str | None
+    withdrawn_by: str | None
+    withdrawn_reason: str | None
+
+
+class InspectionCount(TypedDict):
+    """
+    Inspections of one kind of finding at a site in a year (UTC), as what they found.
+
+    confirmed: hits. other_cause: something else was the matter. nothing_found: false alarms, or rightly
+    nothing where the kind is `none`. missed: something was found of which nothing had been said.
+    """
+
+    kind: Kind
+    site: str
+    year: int
+    confirmed: int
+    other_cause: int
+    nothing_found: int
+    missed: int
+
+
+class InspectionCounts(TypedDict):
+    """
+    How often inspections found what was said, latest year first.
+    """
+
+    counts: list[InspectionCount]
+
+
+class InspectionRequest(TypedDict):
+    """
+    What an inspection found.
+
+    outcome: `confirmed`: what the service said is what it was; `other-cause`: something else was the matter,
+    `cause` says what; `nothing-found`. kind: what the service had said, by default what it says now; `none`
+    where it said nothing. alarm_id: the alarm that it was about. time: when it was, by default now.
+    """
+
+    on_behalf_of: NotRequired[str | None]
+    outcome: InspectionOutcome
+    text: str
+    kind: NotRequired[Kind | None]
+    cause: NotRequired[str | None]
+    alarm_id: NotRequired[str | None]
+    time: NotRequired[str | None]
+
+
 class LinkChange(TypedDict):
     """
     The state a link changed to, and why.
@@ -2380,6 +2462,11 @@ class PageEventReport(TypedDict):
 
 class PageIed(TypedDict):
     items: list[Ied]
+    next_cursor: str | None
+
+
+class PageInspection(TypedDict):
+    items: list[Inspection]
     next_cursor: str | None
 
 

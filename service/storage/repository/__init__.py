@@ -29,6 +29,7 @@ from service.storage.repository.history.start_reference import StartReferenceRow
 from service.storage.repository.history.start_reports import StartReportRows
 from service.storage.repository.history.starts import StartRows
 from service.storage.repository.history.thinned_trend import ThinnedTrendRows
+from service.storage.repository.inspections import InspectionRows
 from service.storage.repository.jobs.notices import JobNoticeRows
 from service.storage.repository.jobs.queue import JobRows
 from service.storage.repository.jobs.repetitions import RepetitionRows
@@ -94,6 +95,7 @@ class Repository(
     ObservationRows,
     ConditionDayRows,
     ConditionEventRows,
+    InspectionRows,
     ConditionRows,
     FoldingRows,
     MotorConditionRows,

@@ -16,6 +16,7 @@ from service.storage.records import (
     Alarm,
     ConditionChange,
     ConditionEvent,
+    Inspection,
     MotorHealth,
     RecordingEntry,
     RecordingRequest,
@@ -37,6 +38,7 @@ from service.web.motor.verdict import MotorVerdict, motor_verdict
 MOST_ALARMS: Final = 10
 MOST_NOTES: Final = 20
 MOST_CHANGES: Final = 10
+MOST_INSPECTIONS: Final = 10
 MOST_RECORDINGS: Final = 8
 MOST_REQUESTS: Final = 3
 MEASURED_WITHIN_NS: Final = 30 * NANOSECONDS_PER_DAY
@@ -70,6 +72,7 @@ class MotorPage:
     measured: MeasuredValues | None
     alarms: Sequence[Alarm]
     notes: Sequence[ConditionEvent]
+    inspections: Sequence[Inspection]
     more_notes: bool
     changes: Sequence[ConditionChange]
     recordings: Sequence[RecordingEntry]
@@ -108,6 +111,7 @@ def motor_page(context: ApiContext, name: str, span: TrendSpan, now_ns: int) -> 
         measured=measured_values(repository.latest_sample(name, since_ns=now_ns - MEASURED_WITHIN_NS)),
         alarms=repository.open_alarms(motor=name, limit=MOST_ALARMS).items,
         notes=notes.items,
+        inspections=repository.inspections(name, limit=MOST_INSPECTIONS).items,
         more_notes=notes.next is not None,
         changes=repository.condition_history(name, limit=MOST_CHANGES).items,
         recordings=recordings,

@@ -9,6 +9,7 @@ from fastapi.responses import JSONResponse
 from starlette.responses import Response
 
 from core.condition.events import EventKind
+from core.condition.kinds import Kind
 from core.units import NANOSECONDS_PER_SECOND
 from service.access.permissions import Permission
 from service.api.access.requirements import require
@@ -21,6 +22,7 @@ from service.api.recordings.diagnoses import queue_diagnosis
 from service.api.recordings.diagnosis_schemas import DiagnosisRequest
 from service.storage.records import StopOf
 from service.storage.repository.sites import AtSite
+from service.storage.states import InspectionOutcome
 from service.web.addresses import address
 from service.web.forms import document_of_form
 from service.web.live.routes import live_address
@@ -59,6 +61,8 @@ def show_motor(view: Looking, name: Name, days: Annotated[str, Query(max_length=
         live=live,
         here=address("/motors", name),
         kinds=_kinds(view),
+        told_kinds=list(Kind),
+        outcomes=list(InspectionOutcome),
         long_record_s=view.context.settings.long_record_s,
         undo=latest_to_undo(page.notes, view.asking.actor.name, view.now_ns),
     )
@@ -126,7 +130,7 @@ def write_note(
     anew: Annotated[bool, Form()] = False,
 ) -> Response:
     """Write into the motor's logbook. All kinds but a plain note change what its condition follows from."""
-    wanted = document_of_form(NoteRequest, {"text": text, "kind": kind, "time": _utc(time)})
+    wanted = document_of_form(NoteRequest, {"text": text, "kind": kind, "time": utc(time)})
     if wanted.kind is not EventKind.NOTE:
         view.asking.demand(Permission.CONFIGURE, f"tell of {wanted.kind.value}")
         if not anew:
@@ -177,7 +181,7 @@ def plan_stop(
     of: Annotated[StopOf, Form()] = StopOf.MOTOR,
 ) -> Response:
     """Plan when the motor, or its whole site, stops next."""
-    wanted = document_of_form(StopRequest, {"time": _utc(time)})
+    wanted = document_of_form(StopRequest, {"time": utc(time)})
     keep_stop(view.context, of, _named(view, name, of), wanted.time, view.asking.actor)
     return _done(view, name, "stop-planned")
 
@@ -194,7 +198,7 @@ def _named(view: View, motor: str, of: StopOf) -> str:
     return motor if of is StopOf.MOTOR else view.context.repository.motor(motor).site
 
 
-def _utc(text: str) -> str:
+def utc(text: str) -> str:
     """Return the time of a form's field, which is in UTC and has no offset, as the API takes it."""
     if "T" not in text or text.endswith("Z"):
         return text
