@@ -23,7 +23,10 @@ def stop_line(found: UntilStop | None, now_ns: int) -> StopLine | None:
     """Return what the page says of a motor's planned stop; None without one."""
     if found is None:
         return None
-    reasons = [*found.reasons, *(f"{one.part}: {one.reason}" for one in found.parts)]
+    # Where there is no probability, or a part is beyond its limit, the sentence has the first reason itself.
+    beside = found.reasons if found.probability else found.reasons[1:]
+    of_parts = [f"{one.part}: {one.reason}" for one in found.parts]
+    reasons = [*of_parts, *(one for one in beside if one not in of_parts)]
     likely_ns = None if found.likely_until is None else nanoseconds(found.likely_until)
     if likely_ns is not None and likely_ns > now_ns:
         reasons.insert(0, f"90 % likely until {day(likely_ns)}")
