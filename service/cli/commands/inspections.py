@@ -79,7 +79,7 @@ def figures(url: Url = DEFAULT_URL, *, as_json: Json = False) -> None:
 def withdraw(
     motor: MotorName,
     inspection: Annotated[str, typer.Argument(metavar="ID", help="The inspection's id.")],
-    reason: Annotated[str, typer.Option(metavar="TEXT", help="Why it was wrong; it is kept.")],
+    reason: Annotated[str, typer.Option(metavar="TEXT", help="Why it does not count; it is kept.")],
     url: Url = DEFAULT_URL,
     *,
     as_json: Json = False,
