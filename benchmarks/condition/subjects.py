@@ -74,7 +74,8 @@ def _forecasts(effort: Effort) -> str:
 rate that wanders by a factor of two or more, or exponentially with 25 to 100 records; up to four
 forecasts of each motor after the change was found. The time is that until the true level
 reaches the limit of the forecast. The ends of the interval are the 5 and 95 % quantiles; it is
-published as one of 80 %. `Too early`, `too late`: the whole interval was."""
+published as one of 80 %. `Told with`: until when the level is told to stay below its limit, and how
+often it did; chances were calibrated with other motors. `Too early`, `too late`: the whole interval was."""
 
 
 def _false_alarms(effort: Effort) -> str:

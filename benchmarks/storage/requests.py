@@ -34,6 +34,7 @@ UNTIMED = {
     "/api/v1/audit/export": "reads the whole trail",
     "/api/v1/audit/verification": "reads the whole trail",
     "/api/v1/exports/alarms": "writes all that is chosen into a file",
+    "/api/v1/exports/inspections": "writes all that is chosen into a file",
     "/api/v1/exports/measurements": "writes all that is chosen into a file",
     "/api/v1/exports/recordings": "writes all that is chosen into a file",
     "/api/v1/exports/starts": "writes all that is chosen into a file",
@@ -41,6 +42,10 @@ UNTIMED = {
     "/api/v1/notifications": "reads messages, which are deleted after a time",
     "/api/v1/notifications/{notification_id}": "reads messages, which are deleted after a time",
     "/api/v1/notification-channels": "reads messages, which are deleted after a time",
+    "/api/v1/motors/{name}/inspections": "reads what people told of a motor, 500 at most",
+    "/api/v1/motors/{name}/inspections/{inspection_id}": "reads one row of inspections",
+    "/api/v1/motors/{name}/inspections/{inspection_id}/pictures/{number}": "reads one picture",
+    "/api/v1/inspections/figures": "reads what people told of motors, 500 of each at most",
     "/healthz": "asks the database nothing",
     "/api/v1/login": "asks the database nothing",
     "/api/v1/login/passkey": "asks the database nothing",
@@ -64,6 +69,8 @@ _TREND = (
 
 TIMED: Mapping[str, tuple[str, ...]] = {
     "/api/v1/sites": ("", "?limit=2&cursor={name}"),
+    "/api/v1/sites/{name}/planned-stop": ("{site}",),
+    "/api/v1/motors/{name}/planned-stop": _MOTOR,
     "/api/v1/motors": ("", "?limit=1000", "?health=true", "?health=true&cursor={name}", "?cursor={name}"),
     "/api/v1/motors/{name}": ("{some}",),
     "/api/v1/motors/{name}/health": _MOTOR,

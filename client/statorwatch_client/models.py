@@ -111,6 +111,10 @@ AuditAction: TypeAlias = Literal[
     "note-added",
     "note-withdrawn",
     "reference-restarted",
+    "inspection-added",
+    "inspection-withdrawn",
+    "stop-planned",
+    "stop-cancelled",
     "quarantine-released",
     "alarm-acknowledged",
     "alarm-shelved",
@@ -424,11 +428,14 @@ class Forecast(TypedDict):
     Days from the latest record until the level reaches `limit`: likely not before, middle, likely by then.
 
     One chance in ten each that it is earlier than the first or later than the last. `days` is null where the
-    records show no trend towards the limit.
+    records show no trend towards the limit. chances: probability that the level has reached the limit 0,
+    0.25, 0.5, 1, 2, 3, 5, 7, 10, 14, 21, 30, 45, 60, 90, 120, 180, 270, 365, 545, 730, 1095, 1825 and 3650
+    days after that record; null where too few records tell.
     """
 
     limit: float | None
     days: tuple[float, float, float] | None
+    chances: NotRequired[list[float] | None]
 
 
 Format: TypeAlias = Literal["csv", "xlsx", "parquet"]
@@ -483,6 +490,17 @@ class Indicators(TypedDict):
     negative_sequence_impedance_ohm: float
     park_axis_ratio: float
     park_axis_angle_deg: float
+
+
+InspectionOutcome: TypeAlias = Literal["confirmed", "other-cause", "nothing-found"]
+
+
+class InspectionWithdrawal(TypedDict):
+    """
+    Why an inspection was wrong.
+    """
+
+    reason: str
 
 
 class Integration(TypedDict):
@@ -650,14 +668,11 @@ class LoadImport(TypedDict):
 class LoginRequest(TypedDict):
     """
     Who logs in. code: of their authenticator app, or a recovery code, where they have a second factor.
-
-    passkey: in place of the code, what a browser's `PublicKeyCredential.toJSON()` gives, as text.
     """
 
     name: str
     password: str
     code: NotRequired[str | None]
-    passkey: NotRequired[str | None]
 
 
 class LoginWays(TypedDict):
@@ -743,18 +758,6 @@ class Losses(TypedDict):
 
 
 MeasurementSource: TypeAlias = Literal["load-profile", "polled"]
-
-
-class NewPasskey(TypedDict):
-    """
-    A passkey that was added. recovery_codes: for who had no second factor, shown this once.
-    """
-
-    id: str
-    label: str
-    created_time: str
-    used_time: str | None
-    recovery_codes: list[str]
 
 
 class NewPassword(TypedDict):
@@ -919,42 +922,17 @@ Part: TypeAlias = Literal[
 ]
 
 
-class Passkey(TypedDict):
+class PartUntilStop(TypedDict):
     """
-    A passkey of a user. used_time: when it last let them in.
-    """
+    What is known of a part until the planned stop. probability: null where it is not known.
 
-    id: str
-    label: str
-    created_time: str
-    used_time: str | None
-
-
-class PasskeyAnswer(TypedDict):
-    """
-    What a device has made: `PublicKeyCredential.toJSON()`, as text. label: what its owner calls it.
+    is_beyond: it is beyond its limit already.
     """
 
-    label: str
-    answer: str
-
-
-class PasskeyOptions(TypedDict):
-    """
-    What browsers ask a device with: PublicKeyCredentialCreationOptionsJSON, or ...RequestOptionsJSON.
-
-    `PublicKeyCredential.parseCreationOptionsFromJSON` and `parseRequestOptionsFromJSON` read them.
-    """
-
-    options: dict[str, Any]
-
-
-class Passkeys(TypedDict):
-    """
-    All passkeys of a user.
-    """
-
-    items: list[Passkey]
+    part: Part
+    probability: float | None
+    reason: str
+    is_beyond: bool
 
 
 class PasswordChange(TypedDict):
@@ -1527,6 +1505,17 @@ class Status(TypedDict):
     parts: NotRequired[dict[str, str]]
 
 
+StopOf: TypeAlias = Literal["motor", "site"]
+
+
+class StopRequest(TypedDict):
+    """
+    When something stops.
+    """
+
+    time: str
+
+
 class SupplyFigures(TypedDict):
     """
     Figures of the supply and of what the motor draws from it, over one recording.
@@ -1742,6 +1731,23 @@ TrackingState: TypeAlias = Literal["steady", "drifting", "undetermined"]
 
 
 TriggerAction: TypeAlias = Literal["set-reset", "pulse"]
+
+
+class UntilStop(TypedDict):
+    """
+    Whether a motor holds until its planned stop, from what is seen of it today.
+
+    of: whether the stop is the motor's own or its site's. probability: that no part passes its limit before;
+    0 where one is beyond it already, null where nothing can be said: `reasons` say why. likely_until: until
+    then the probability is 90 % and more; null where it is not known, or beyond ten years.
+    """
+
+    stop: str
+    of: StopOf
+    probability: float | None
+    likely_until: str | None
+    parts: list[PartUntilStop]
+    reasons: list[str]
 
 
 Urgency: TypeAlias = Literal["today", "within-days", "within-weeks", "next-stop", "none"]
@@ -2181,6 +2187,75 @@ class ImportedStart(TypedDict):
     outcome: ReportOutcome
 
 
+class Inspection(TypedDict):
+    """
+    What an inspection of a motor found, beside what the service had said. Nothing is judged by it.
+
+    kind, finding: what was said. cause: what it was, where that is something else. pictures: how many, from
+    1 on. An inspection that was withdrawn does not count.
+    """
+
+    id: str
+    motor: str
+    time: str
+    kind: Kind
+    finding: str
+    outcome: InspectionOutcome
+    cause: str | None
+    text: str
+    alarm_id: str | None
+    pictures: int
+    by: str
+    on_behalf_of: str | None
+    made_time: str
+    withdrawn_time: str | None
+    withdrawn_by: str | None
+    withdrawn_reason: str | None
+
+
+class InspectionCount(TypedDict):
+    """
+    Inspections of one kind of finding at a site in a year (UTC), as what they found.
+
+    confirmed: hits. other_cause: something else was the matter. nothing_found: false alarms, or rightly
+    nothing where the kind is `none`. missed: something was found of which nothing had been said.
+    """
+
+    kind: Kind
+    site: str
+    year: int
+    confirmed: int
+    other_cause: int
+    nothing_found: int
+    missed: int
+
+
+class InspectionCounts(TypedDict):
+    """
+    How often inspections found what was said, latest year first.
+    """
+
+    counts: list[InspectionCount]
+
+
+class InspectionRequest(TypedDict):
+    """
+    What an inspection found.
+
+    outcome: `confirmed`: what the service said is what it was; `other-cause`: something else was the matter,
+    `cause` says what; `nothing-found`. kind: what the service had said, by default what it says now; `none`
+    where it said nothing. alarm_id: the alarm that it was about. time: when it was, by default now.
+    """
+
+    on_behalf_of: NotRequired[str | None]
+    outcome: InspectionOutcome
+    text: str
+    kind: NotRequired[Kind | None]
+    cause: NotRequired[str | None]
+    alarm_id: NotRequired[str | None]
+    time: NotRequired[str | None]
+
+
 class LinkChange(TypedDict):
     """
     The state a link changed to, and why.
@@ -2213,7 +2288,6 @@ class ListedRecording(TypedDict):
     duration_s: float | None
     pre_trigger_s: float | None
     parts: list[str] | None
-    copy_of: str | None
     announced_time: str
     fetched_time: str | None
     recorded_time: str | None
@@ -2391,6 +2465,11 @@ class PageIed(TypedDict):
     next_cursor: str | None
 
 
+class PageInspection(TypedDict):
+    items: list[Inspection]
+    next_cursor: str | None
+
+
 class PageLinkChange(TypedDict):
     items: list[LinkChange]
     next_cursor: str | None
@@ -2467,6 +2546,15 @@ class PartOfMotor(TypedDict):
     explained_by: Part | None
 
 
+class PlannedStop(TypedDict):
+    """
+    When a motor stops next, and whether the motor or its site was planned so; null without a plan.
+    """
+
+    time: str | None
+    of: StopOf | None
+
+
 class Recording(TypedDict):
     """
     A recording. `recorded_time` is the trigger time written in the record, known once it was read.
@@ -2475,7 +2563,6 @@ class Recording(TypedDict):
     operation_remark: why the motor's parameters cannot be estimated from this start.
     duration_s: its length; pre_trigger_s: how much of it is before the trigger; null before it was read.
     parts: the recordings that it was joined from (source joined); null of others.
-    copy_of: the recording of the same event, with values as fine or finer, that counts in its place.
     That time is the relay's; `clock_...` is the latest comparison of its clock when the recording was stored,
     null where that was not made within an hour of it.
     """
@@ -2497,7 +2584,6 @@ class Recording(TypedDict):
     duration_s: float | None
     pre_trigger_s: float | None
     parts: list[str] | None
-    copy_of: str | None
     announced_time: str
     fetched_time: str | None
     recorded_time: str | None
@@ -2799,6 +2885,8 @@ class Condition(TypedDict):
 class ConditionDetails(TypedDict):
     """
     A condition with what was said from each of the latest records on, oldest first.
+
+    until_stop: whether the motor holds until its planned stop; null where none is planned.
     """
 
     motor: str
@@ -2826,6 +2914,7 @@ class ConditionDetails(TypedDict):
     urgency: NotRequired[Urgency]
     causes: NotRequired[list[LikelyCause]]
     parts: NotRequired[list[PartOfMotor]]
+    until_stop: UntilStop | None
     history: list[ConditionPoint]
 
 
@@ -3024,8 +3113,6 @@ class PageTrendPoint(TypedDict):
 class RecordingDetails(TypedDict):
     """
     A recording with its files and its latest diagnosis.
-
-    copies: recordings of the same event in whose place it counts.
     """
 
     clock_offset_s: float | None
@@ -3045,11 +3132,9 @@ class RecordingDetails(TypedDict):
     duration_s: float | None
     pre_trigger_s: float | None
     parts: list[str] | None
-    copy_of: str | None
     announced_time: str
     fetched_time: str | None
     recorded_time: str | None
-    copies: list[str]
     files: list[RecordingFile]
     diagnosis: Diagnosis | None
 

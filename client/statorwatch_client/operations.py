@@ -400,6 +400,199 @@ class Operations:
         )
         return answer
 
+    def get_planned_stop(self, motor: str) -> models.PlannedStop:
+        """Return when a motor stops next: by its own plan, or by that of its site where it is earlier.
+
+        Parameters
+        ----------
+        motor
+            Name of the motor.
+        """
+        answer: models.PlannedStop = self._document(
+            Request("GET", f"/api/v1/motors/{segment(motor)}/planned-stop")
+        )
+        return answer
+
+    def plan_stop(self, motor: str, document: models.StopRequest) -> models.PlannedStop:
+        """Plan when a motor stops next, in place of an earlier plan; its condition answers for that time.
+
+        Parameters
+        ----------
+        motor
+            Name of the motor.
+        document
+            What is sent.
+        """
+        answer: models.PlannedStop = self._document(
+            Request("PUT", f"/api/v1/motors/{segment(motor)}/planned-stop", json=document)
+        )
+        return answer
+
+    def cancel_stop(self, motor: str) -> None:
+        """Drop the plan of a motor's stop; that of its site stays.
+
+        Parameters
+        ----------
+        motor
+            Name of the motor.
+        """
+        self._done(Request("DELETE", f"/api/v1/motors/{segment(motor)}/planned-stop"))
+
+    def get_planned_stop_of_site(self, site: str) -> models.PlannedStop:
+        """Return when all motors of a site stop next.
+
+        Parameters
+        ----------
+        site
+            Name of the site.
+        """
+        answer: models.PlannedStop = self._document(
+            Request("GET", f"/api/v1/sites/{segment(site)}/planned-stop")
+        )
+        return answer
+
+    def plan_stop_of_site(self, site: str, document: models.StopRequest) -> models.PlannedStop:
+        """Plan when all motors of a site stop next, in place of an earlier plan.
+
+        Parameters
+        ----------
+        site
+            Name of the site.
+        document
+            What is sent.
+        """
+        answer: models.PlannedStop = self._document(
+            Request("PUT", f"/api/v1/sites/{segment(site)}/planned-stop", json=document)
+        )
+        return answer
+
+    def cancel_stop_of_site(self, site: str) -> None:
+        """Drop the plan of a site's stop; those of its motors stay.
+
+        Parameters
+        ----------
+        site
+            Name of the site.
+        """
+        self._done(Request("DELETE", f"/api/v1/sites/{segment(site)}/planned-stop"))
+
+    def list_inspections(self, motor: str, *, limit: int | None = None) -> Iterator[models.Inspection]:
+        """Return what inspections of a motor found, latest first; those that were withdrawn as well.
+
+        Parameters
+        ----------
+        motor
+            Name of the motor.
+        limit
+            Most items that are asked for at once; the list goes on all the same. Without: 100.
+        """
+        return self._items(
+            Request("GET", f"/api/v1/motors/{segment(motor)}/inspections", query={"limit": limit})
+        )
+
+    def add_inspection(self, motor: str, document: models.InspectionRequest) -> models.Inspection:
+        """Keep what an inspection of a motor found. It is counted, and no judgement follows from it.
+
+        Parameters
+        ----------
+        motor
+            Name of the motor.
+        document
+            What is sent.
+        """
+        answer: models.Inspection = self._document(
+            Request("POST", f"/api/v1/motors/{segment(motor)}/inspections", json=document)
+        )
+        return answer
+
+    def get_inspection(self, motor: str, inspection_id: str) -> models.Inspection:
+        """Return one inspection.
+
+        Parameters
+        ----------
+        motor
+            Name of the motor.
+        inspection_id
+            As a document tells it.
+        """
+        answer: models.Inspection = self._document(
+            Request("GET", f"/api/v1/motors/{segment(motor)}/inspections/{segment(inspection_id)}")
+        )
+        return answer
+
+    def add_inspection_picture(self, motor: str, inspection_id: str, content: bytes) -> models.Inspection:
+        """Keep a picture of an inspection, which has at most four.
+
+        Parameters
+        ----------
+        motor
+            Name of the motor.
+        inspection_id
+            As a document tells it.
+        content
+            A PNG or JPEG, known by its content.
+        """
+        answer: models.Inspection = self._document(
+            Request(
+                "POST",
+                f"/api/v1/motors/{segment(motor)}/inspections/{segment(inspection_id)}/pictures",
+                content=content,
+                headers={"Content-Type": "application/octet-stream"},
+            )
+        )
+        return answer
+
+    def get_inspection_picture(
+        self, motor: str, inspection_id: str, number: str
+    ) -> AbstractContextManager[Download]:
+        """Return a picture of an inspection.
+
+        The answer is a file, which is read inside a `with` statement.
+
+        Parameters
+        ----------
+        motor
+            Name of the motor.
+        inspection_id
+            As a document tells it.
+        number
+            As a document tells it.
+        """
+        return self._file(
+            Request(
+                "GET",
+                f"/api/v1/motors/{segment(motor)}/inspections/{segment(inspection_id)}/pictures/{segment(number)}",
+            )
+        )
+
+    def withdraw_inspection(
+        self, motor: str, inspection_id: str, document: models.InspectionWithdrawal
+    ) -> models.Inspection:
+        """Let an inspection that was wrong count no more.
+
+        Parameters
+        ----------
+        motor
+            Name of the motor.
+        inspection_id
+            As a document tells it.
+        document
+            What is sent.
+        """
+        answer: models.Inspection = self._document(
+            Request(
+                "POST",
+                f"/api/v1/motors/{segment(motor)}/inspections/{segment(inspection_id)}/withdrawal",
+                json=document,
+            )
+        )
+        return answer
+
+    def get_inspection_figures(self) -> models.InspectionCounts:
+        """Return how often inspections found what was said, by kind of finding, site and year."""
+        answer: models.InspectionCounts = self._document(Request("GET", "/api/v1/inspections/figures"))
+        return answer
+
     def get_rotor(self, motor: str) -> models.RotorCondition:
         """Return the condition of a motor's rotor, from all its recordings.
 
@@ -1585,6 +1778,24 @@ class Operations:
             Without: by the header Accept, else CSV.
         """
         return self._file(Request("GET", "/api/v1/exports/alarms", query={"motor": motor, "format": format}))
+
+    def export_inspections(
+        self, *, motor: Sequence[str] | None = None, format: models.Format | None = None
+    ) -> AbstractContextManager[Download]:
+        """Return what inspections found, of one motor after another or of all, latest first.
+
+        The answer is a file, which is read inside a `with` statement.
+
+        Parameters
+        ----------
+        motor
+            Only these, in this order; without: all.
+        format
+            Without: by the header Accept, else CSV.
+        """
+        return self._file(
+            Request("GET", "/api/v1/exports/inspections", query={"motor": motor, "format": format})
+        )
 
     def get_fleet_report(
         self,

@@ -29,7 +29,7 @@ MEANINGS: Final[Mapping[Permission, str]] = {
     Permission.METRICS: "Read GET /metrics.",
     Permission.TRIGGER: "Have relays make recordings.",
     Permission.ACKNOWLEDGE: "Acknowledge and shelve alarms.",
-    Permission.NOTE: "Write into the logbook of a motor.",
+    Permission.NOTE: "Write into the logbook of a motor, plan stops, tell what inspections found.",
     Permission.RELEASE: "Have a relay visited again that was set aside.",
     Permission.RECORDINGS: "Upload recordings, diagnose them again, delete them.",
     Permission.CONFIGURE: (

@@ -4,6 +4,7 @@ import json
 from collections.abc import Collection, Mapping, Sequence
 from functools import cache
 from importlib.metadata import version
+from types import MappingProxyType
 
 from fastapi import APIRouter, Depends, FastAPI, Response
 from fastapi.openapi.utils import get_openapi
@@ -19,21 +20,15 @@ from service.api.alarms import people as alarm_people
 from service.api.audit import trail as audit_trail
 from service.api.backups import routes as backups
 from service.api.classification import routes as classification
-from service.api.conditions import notes
+from service.api.conditions import notes, planned_stops
 from service.api.conditions import routes as conditions
 from service.api.context import ApiContext
 from service.api.exports import routes as exports
 from service.api.host_guard import HostGuard
+from service.api.inspections import routes as inspections
 from service.api.integrations import routes as integrations
 from service.api.limits.arrivals import Arrivals
-from service.api.limits.body_limits import (
-    MAX_REPORT_BYTES,
-    REPORT_TYPE,
-    UPLOAD_TYPE,
-    BodyLimits,
-    Route,
-    document,
-)
+from service.api.limits.body_limits import REPORT, BodyLimits, BodyRule, Route, document
 from service.api.limits.long_lists import LongLists
 from service.api.load import routes as load
 from service.api.motors import baselines, measurements
@@ -63,12 +58,12 @@ def create_app(
     *,
     pages: Sequence[APIRouter] = (),
     page_uploads: Collection[Route] = (),
-    page_reports: Collection[Route] = (),
+    page_bodies: Mapping[Route, BodyRule] = MappingProxyType({}),
 ) -> FastAPI:
     """Return the ASGI application for a plant that is in the database already.
 
     pages: routes for people beside those of the API.  page_uploads: those of them that take files.
-    page_reports: those that take a relay's report in a form.
+    page_bodies: what those take that take no small form.
     """
     app = FastAPI(
         title="StatorWatch",
@@ -85,6 +80,8 @@ def create_app(
         motors,
         conditions,
         notes,
+        planned_stops,
+        inspections,
         rotor_and_supply,
         tracking,
         classification,
@@ -126,19 +123,22 @@ def create_app(
     max_upload_bytes = settings.max_upload_bytes
     arrivals = Arrivals(grace_s=settings.transfer_timeout_s, least_rate=settings.min_upload_rate)
     uploads = frozenset((method, PREFIX + path) for method, path in recordings.UPLOAD_ROUTES)
-    texts = frozenset((method, PREFIX + path) for method, path in relay_reports.REPORT_ROUTES)
+    own = dict.fromkeys(relay_reports.REPORT_ROUTES, REPORT) | dict(inspections.PICTURE_ROUTES)
+    rules = {(method, PREFIX + path): rule for (method, path), rule in own.items()}
     app.add_middleware(LongLists)
     app.add_middleware(
         BodyLimits,
         upload_routes=uploads | set(page_uploads),
-        report_routes=dict.fromkeys(texts, REPORT_TYPE) | dict.fromkeys(page_reports, UPLOAD_TYPE),
+        body_rules=rules | dict(page_bodies),
         max_upload_bytes=max_upload_bytes,
         arrivals=arrivals,
     )
     app.add_middleware(Gate, context=context, needs=_needs(app))
     hosts = [str(settings.bind_address), *settings.allowed_hosts]
     app.add_middleware(HostGuard, hosts=hosts)
-    limits = dict.fromkeys(uploads, max_upload_bytes) | dict.fromkeys(texts, MAX_REPORT_BYTES)
+    limits = dict.fromkeys(uploads, max_upload_bytes) | {
+        route: rule.most_bytes for route, rule in rules.items()
+    }
     _complete_document(app, limits)
     return app
 

@@ -17,6 +17,10 @@ class AuditAction(StrEnum):
     NOTE_ADDED = "note-added"
     NOTE_WITHDRAWN = "note-withdrawn"
     REFERENCE_RESTARTED = "reference-restarted"
+    INSPECTION_ADDED = "inspection-added"
+    INSPECTION_WITHDRAWN = "inspection-withdrawn"
+    STOP_PLANNED = "stop-planned"
+    STOP_CANCELLED = "stop-cancelled"
     QUARANTINE_RELEASED = "quarantine-released"
     ALARM_ACKNOWLEDGED = "alarm-acknowledged"
     ALARM_SHELVED = "alarm-shelved"
@@ -71,6 +75,10 @@ MEANINGS: Mapping[AuditAction, str] = {
     AuditAction.NOTE_ADDED: "Somebody wrote into a motor's logbook.",
     AuditAction.NOTE_WITHDRAWN: "Somebody let a note count no more.",
     AuditAction.REFERENCE_RESTARTED: "Somebody took a motor for healthy as it is.",
+    AuditAction.INSPECTION_ADDED: "Somebody told what an inspection of a motor found, or gave a picture.",
+    AuditAction.INSPECTION_WITHDRAWN: "Somebody let an inspection count no more.",
+    AuditAction.STOP_PLANNED: "Somebody planned when a motor or a site stops; `after` says when.",
+    AuditAction.STOP_CANCELLED: "Somebody dropped the plan of a stop.",
     AuditAction.QUARANTINE_RELEASED: "Somebody had a relay visited again; `before` is why it was set aside.",
     AuditAction.ALARM_ACKNOWLEDGED: "Somebody took notice of an alarm, with the comment in `after`.",
     AuditAction.ALARM_SHELVED: "Somebody set an alarm aside; `after` says until when, or until which value.",

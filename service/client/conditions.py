@@ -9,6 +9,7 @@ from core.motor_condition.parts import findings_beside_stator, parts_of
 from core.quantity_text import plain
 from core.terms import phrase
 from service.client.rest_client import Document, ServiceError
+from service.client.until_stop import answer_of
 from service.client.verdicts import level, local_time, percent
 
 STATE_COLOURS = {"healthy": "green", "watch": "yellow", "fault": "red"}
@@ -79,6 +80,9 @@ def condition_lines(condition: Document) -> list[tuple[str, Text]]:
         lines.append(("size of the change", Text(level(condition["size"], condition.get("size_ci95")))))
     for number, reason in enumerate(_texts(condition["reasons"])):
         lines.append(("why" if number == 0 else "", Text(reason)))
+    ahead = condition.get("until_stop")
+    if isinstance(ahead, Mapping):
+        lines.append(("planned stop", Text(_until_stop(ahead))))
     lines.append(("reference", Text(_reference(condition["reference"]))))
     when = condition["as_of"]
     if when is None:
@@ -109,6 +113,14 @@ def _growth(condition: Document) -> str:
         f"{words}; {percent(forecast['limit'])} % in about {plain(middle)} days, "
         f"in eight of ten cases {plain(low)} to {plain(high)}"
     )
+
+
+def _until_stop(ahead: Document) -> str:
+    reasons = _texts(ahead["reasons"])
+    probability = ahead["probability"]
+    answer = answer_of(probability if isinstance(probability, int | float) else None, reasons)
+    of = " (of the site)" if ahead["of"] == "site" else ""
+    return f"{local_time(ahead['stop'])}{of}: {answer}" + "".join(f"; {one}" for one in reasons[1:])
 
 
 def _reference(reference: object) -> str:

@@ -64,6 +64,13 @@ class TooManyNotesError(StorageError):
         )
 
 
+class TooManyInspectionsError(StorageError):
+    """A motor has as many inspections, or they as many pictures, as they may have."""
+
+    def __init__(self, of: str, most: int, what: str) -> None:
+        super().__init__(f"{of} has {most} {what}, the most it may have; nothing was changed")
+
+
 class UserExistsError(StorageError):
     """There is a user of this name already."""
 

@@ -201,3 +201,13 @@ class NotifiedEvent(StrEnum):
     REOPENED = "reopened"
     CLEARED = "cleared"
     ACKNOWLEDGED = "acknowledged"
+
+
+class InspectionOutcome(StrEnum):
+    """What an inspection of a motor found, beside what the service had said. The words are those of REST."""
+
+    CONFIRMED = "confirmed"
+    """What was said is what it was."""
+    OTHER_CAUSE = "other-cause"
+    """Something else was the matter; where nothing was said, something was missed."""
+    NOTHING_FOUND = "nothing-found"

@@ -13,7 +13,7 @@ from service.web.help.pages import FOLDER, HelpPages
 from service.web.html_problems import HtmlProblems
 from service.web.live import routes as live
 from service.web.load import routes as load
-from service.web.motor import relay_reports
+from service.web.motor import inspections, relay_reports
 from service.web.motor import routes as motor
 from service.web.notifications import routes as notifications
 from service.web.people import account, passkeys, second_factor
@@ -46,6 +46,7 @@ ROOMS = (
     notifications,
     motor,
     relay_reports,
+    inspections,
     load,
     starts,
 )
@@ -61,7 +62,7 @@ def create_site(context: ApiContext, *, help_folder: Traversable = FOLDER) -> Fa
         context,
         pages=[room.router for room in ROOMS],
         page_uploads=recording.UPLOADS,
-        page_reports=relay_reports.REPORTS,
+        page_bodies=relay_reports.BODIES | inspections.BODIES,
     )
     live.install_live(app, context)
     fleet.install_fleet(app, context)

@@ -36,6 +36,10 @@ NOTICES: Final[Mapping[str, str]] = {
     "reference-restarted": "The motor counts as healthy as it is. Its reference is learnt anew.",
     "note-kept": "The note is kept. Where the condition rests on it, that follows within seconds.",
     "note-withdrawn": "The note counts no more.",
+    "inspection-kept": "Kept. It counts in the figures of inspections; no judgement follows from it.",
+    "inspection-withdrawn": "The inspection counts no more.",
+    "stop-planned": "The stop is planned. The motor's page says whether it may run until then.",
+    "stop-cancelled": "The plan is dropped.",
     "undone": "Undone. The condition follows within seconds.",
 }
 

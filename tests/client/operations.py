@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from typing import Any
 
 JSON = "application/json"
+RAW = {"text/plain": "text", "application/octet-stream": "content"}
+"""What is sent as it is, and what its argument is called."""
 TIMES = ({"date-time"}, {"date-time", "date"}, {"date"})
 SCALARS = {"string": "str", "integer": "int", "number": "float", "boolean": "bool", "null": "None"}
 FOLLOWED = ("cursor",)
@@ -201,9 +203,9 @@ class Writer:
             parts.append(f"query={{{pairs}}}")
         headers = [f"{one.sent_as!r}: {one.name}" for one in self._headers(operation)]
         content = self._content(operation)
-        if content == "text/plain":
-            headers.append("'Content-Type': 'text/plain'")
-            parts.append("content=text")
+        if content in RAW:
+            headers.append(f"'Content-Type': {content!r}")
+            parts.append(f"content={RAW[content]}")
         elif content == JSON:
             parts.append("json=document")
         elif content is not None:
@@ -271,8 +273,9 @@ class Writer:
             is_required = bool(operation["requestBody"].get("required"))
             kind = self._kind(schema)
             return [Argument("document", "document", kind, "What is sent.", is_required)]
-        if content == "text/plain":
-            return [Argument("text", "text", "bytes", schema["description"], is_required=True)]
+        if content in RAW:
+            name = RAW[content]
+            return [Argument(name, name, "bytes", schema["description"], is_required=True)]
         fields = self._schemas[schema["$ref"].rpartition("/")[2]]["properties"]
         return [
             Argument(

@@ -42,6 +42,7 @@ PERSON = "person-"
 """How the names begin of those who do what ME cannot: log in, and end all of their tokens."""
 Body = dict[str, str]
 ADDRESS = "http://localhost"
+INSPECTION = {"outcome": "nothing-found", "text": "opened and tested"}
 PASSWORD = "correct horse battery"  # noqa: S105 - of nobody
 
 
@@ -156,6 +157,9 @@ class Prepared:
                 return session.post(path, json=json and made, data=data and made)
             kept = session.post(f"{API}/account/passkeys", json=made).json()
             return session.post(path.replace("{passkey_id}", kept["id"]), json=json, data=data)
+    def inspection(self) -> str:
+        kept = self.client.post(f"{MOTOR}/inspections", json=INSPECTION)
+        return str(kept.headers["location"])
 
     def note(self, kind: str = "note") -> str:
         return str(self.client.post(f"{MOTOR}/notes", json={"text": "a note", "kind": kind}).json()["id"])

@@ -141,7 +141,11 @@ class Condition:
             "size_ci95": listed(self.size_ci95),
             "since": time_text(self.since_ns),
             "growth_per_day": self.forecast.growth_per_day,
-            "forecast": {"limit": self.forecast.limit, "days": listed(self.forecast.days)},
+            "forecast": {
+                "limit": self.forecast.limit,
+                "days": listed(self.forecast.days),
+                "chances": listed(self.forecast.chances),
+            },
             "reference": reference_document(self.reference),
             "as_of": time_text(self.as_of_ns),
             "stale": self.stale,
@@ -169,7 +173,7 @@ class Condition:
             If it is no such document.
         """
         forecast, reference = document["forecast"], document["reference"]
-        days = forecast["days"]
+        days, chances = forecast["days"], forecast.get("chances")
         return cls(
             motor=document["motor"],
             state=State(document["state"]),
@@ -189,6 +193,7 @@ class Condition:
                 limit=forecast["limit"],
                 days=None if days is None else (days[0], days[1], days[2]),
                 growth_per_day=document["growth_per_day"],
+                chances=None if chances is None else tuple(chances),
             ),
             reference=reference_of(reference),
             as_of_ns=time_ns_of(document["as_of"]),

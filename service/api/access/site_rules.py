@@ -26,6 +26,7 @@ NO_SITE: Final = "-"
 """It is about people, the service's life, or nobody in particular."""
 
 KEYS: Final[Mapping[str, AtSite]] = {
+    "/sites/{name}": AtSite.SITE,
     "/motors/{name}": AtSite.MOTOR,
     "/ieds/{name}": AtSite.RELAY,
     "/relays/{name}": AtSite.RELAY,
@@ -50,11 +51,13 @@ LISTS: Final = frozenset(
                 "/deletions",
                 "/event-reports",
                 "/exports/alarms",
+                "/exports/inspections",
                 "/exports/measurements",
                 "/exports/recordings",
                 "/exports/starts",
                 "/exports/trend",
                 "/ieds",
+                "/inspections/figures",
                 "/motors",
                 "/recordings",
                 "/reports/alarms",

@@ -9,8 +9,10 @@ from core.machines.parameters import ParametersSource
 from core.machines.typical import TYPICAL_REASON
 from core.motor_condition.condition import Urgency
 from core.motor_condition.parts import Part
-from service.api.conditions.schemas import Condition, ConditionReference
+from service.api.conditions.schemas import Condition, ConditionReference, UntilStop
+from service.condition.planned_stop import until_planned_stop
 from service.condition.staleness import is_stale
+from service.storage import Repository
 from service.storage.records import ConditionEntry, LatestDiagnosis
 
 NOT_JUDGED = "no valid record of the motor has been judged yet"
@@ -32,7 +34,7 @@ _NOTHING: Mapping[str, object] = {
     "state": State.UNKNOWN,
     "kind": Kind.NONE,
     "candidates": [],
-    "forecast": {"limit": None, "days": None},
+    "forecast": {"limit": None, "days": None, "chances": None},
     "finding": "",
     "urgency": Urgency.NONE,
     "causes": [],
@@ -76,6 +78,17 @@ def condition_document(
     return Condition.model_validate(
         {**document, "motor": entry.motor, "stale": stale, "reference": {**_NO_REFERENCE, **known}}
     )
+
+
+def until_stop_document(
+    repository: Repository, entry: ConditionEntry, now_ns: int, oldest_ns: int
+) -> UntilStop | None:
+    """Return whether a motor holds until its planned stop; None where none is ahead. Raises NotFoundError."""
+    stop = repository.planned_stop(entry.motor, now_ns=now_ns)
+    if stop is None:
+        return None
+    answer = until_planned_stop(repository, entry, stop, now_ns=now_ns, oldest_ns=oldest_ns)
+    return UntilStop.model_validate({**answer.as_dict(), "of": stop.of})
 
 
 def _why_milder(

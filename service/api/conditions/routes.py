@@ -7,7 +7,7 @@ from fastapi import APIRouter, Query
 
 from service.access.permissions import Permission
 from service.api.access.requirements import require
-from service.api.conditions.documents import condition_document
+from service.api.conditions.documents import condition_document, until_stop_document
 from service.api.conditions.schemas import ConditionChange, ConditionDetails, ConditionPoint
 from service.api.context import Context
 from service.api.document import Name
@@ -38,7 +38,9 @@ def get_condition(
     )
     points = context.repository.latest_condition_points(name, limit=history)
     return ConditionDetails(
-        **dict(condition), history=[ConditionPoint.model_validate(point) for point in points]
+        **dict(condition),
+        until_stop=until_stop_document(context.repository, health.condition, now_ns, oldest_ns),
+        history=[ConditionPoint.model_validate(point) for point in points],
     )
 
 

@@ -7,8 +7,9 @@ from core.condition.events import EventKind
 from core.condition.kinds import Kind, State
 from core.motor_condition.condition import Urgency
 from core.motor_condition.parts import Part
-from service.api.document import Document, Listed, Reason, RequestForSomebody
+from service.api.document import Document, Listed, Reason, RequestDocument, RequestForSomebody
 from service.api.times import Time, TimeParameter
+from service.storage.records import StopOf
 
 Interval = tuple[float, float]
 
@@ -17,11 +18,14 @@ class Forecast(Document):
     """Days from the latest record until the level reaches `limit`: likely not before, middle, likely by then.
 
     One chance in ten each that it is earlier than the first or later than the last. `days` is null where the
-    records show no trend towards the limit.
+    records show no trend towards the limit. chances: probability that the level has reached the limit 0,
+    0.25, 0.5, 1, 2, 3, 5, 7, 10, 14, 21, 30, 45, 60, 90, 120, 180, 270, 365, 545, 730, 1095, 1825 and 3650
+    days after that record; null where too few records tell.
     """
 
     limit: float | None
     days: tuple[float, float, float] | None
+    chances: Listed[float] | None = None
 
 
 class ConditionReference(Document):
@@ -118,6 +122,47 @@ class Condition(Document):
     parts: Listed[PartOfMotor] = Field(default_factory=list)
 
 
+class PartUntilStop(Document):
+    """What is known of a part until the planned stop. probability: null where it is not known.
+
+    is_beyond: it is beyond its limit already.
+    """
+
+    part: Part
+    probability: float | None
+    reason: str
+    is_beyond: bool
+
+
+class UntilStop(Document):
+    """Whether a motor holds until its planned stop, from what is seen of it today.
+
+    of: whether the stop is the motor's own or its site's. probability: that no part passes its limit before;
+    0 where one is beyond it already, null where nothing can be said: `reasons` say why. likely_until: until
+    then the probability is 90 % and more; null where it is not known, or beyond ten years.
+    """
+
+    stop: Time
+    of: StopOf
+    probability: float | None
+    likely_until: Time | None
+    parts: Listed[PartUntilStop]
+    reasons: Listed[str]
+
+
+class PlannedStop(Document):
+    """When a motor stops next, and whether the motor or its site was planned so; null without a plan."""
+
+    time: Time | None = Field(validation_alias="time_ns")
+    of: StopOf | None
+
+
+class StopRequest(RequestDocument):
+    """When something stops."""
+
+    time: TimeParameter
+
+
 class _Figures(Document):
     state: State
     kind: Kind
@@ -140,8 +185,12 @@ class ConditionPoint(_Figures):
 
 
 class ConditionDetails(Condition):
-    """A condition with what was said from each of the latest records on, oldest first."""
+    """A condition with what was said from each of the latest records on, oldest first.
 
+    until_stop: whether the motor holds until its planned stop; null where none is planned.
+    """
+
+    until_stop: UntilStop | None
     history: Listed[ConditionPoint]
 
 

@@ -13,7 +13,7 @@ from service.api.context import ApiContext, Context
 from service.api.exports.answers import FILES, FileOnly
 from service.api.problems import problems
 from service.api.times import From, To
-from service.exports import alarms, measurements, recordings, starts, trends
+from service.exports import alarms, inspections, measurements, recordings, starts, trends
 from service.plant import AveragingStep
 
 MOST_MOTORS = 1000
@@ -78,6 +78,13 @@ def export_alarms(context: Context, answer: FileOnly, motor: Motors = None) -> S
     """Return the alarms, of one motor after another or of all, latest first."""
     _require(context, motor)
     return answer.of(alarms.TABLE, alarms.alarms(context.repository, motor), motor)
+
+
+@router.get("/inspections")
+def export_inspections(context: Context, answer: FileOnly, motor: Motors = None) -> StreamingResponse:
+    """Return what inspections found, of one motor after another or of all, latest first."""
+    _require(context, motor)
+    return answer.of(inspections.TABLE, inspections.inspections(context.repository, motor), motor)
 
 
 def _require(context: ApiContext, motors: Sequence[str] | None) -> None:

@@ -1,14 +1,15 @@
 """Bounds the body of every request, also where the route reads none.
 
 Routes that take files have the limit of the settings (max_upload_bytes), and few of them at once, because the
-files lie in the temporary folder meanwhile; they take forms with files only. Some take a relay's report as
-text. All others take small JSON documents, or nothing. Bodies other than files are read here to the end,
-before the route begins.
+files lie in the temporary folder meanwhile; they take forms with files only. Some have a rule of their own: a
+relay's report as text, a picture. All others take small JSON documents, or nothing. Bodies other than files
+are read here to the end, before the route begins.
 """
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from http import HTTPStatus
-from typing import NoReturn
+from typing import Final, NoReturn
 
 import anyio
 from starlette.datastructures import Headers
@@ -36,11 +37,23 @@ Route = tuple[str, str]
 """Method and path."""
 
 
+@dataclass(frozen=True, slots=True)
+class BodyRule:
+    """What a route takes that is no small JSON document: one media type, and so many bytes."""
+
+    media_type: str
+    most_bytes: int
+
+
+REPORT: Final = BodyRule(REPORT_TYPE, MAX_REPORT_BYTES)
+REPORT_IN_FORM: Final = BodyRule(UPLOAD_TYPE, MAX_REPORT_BYTES)
+
+
 class BodyLimits:
     """ASGI middleware.
 
     upload_routes: those that take files of up to `max_upload_bytes`.
-    report_routes: those that take a relay's report, and as which media type.
+    body_rules: of those that take something else, by their paths with parameters in braces.
     """
 
     def __init__(
@@ -48,16 +61,13 @@ class BodyLimits:
         app: ASGIApp,
         *,
         upload_routes: frozenset[Route],
-        report_routes: Mapping[Route, str],
+        body_rules: Mapping[Route, BodyRule],
         max_upload_bytes: int,
         arrivals: Arrivals,
     ) -> None:
         self._app = app
         self._upload_routes = upload_routes
-        self._report_routes = [
-            (method, compile_path(path)[0], media_type)
-            for (method, path), media_type in report_routes.items()
-        ]
+        self._rules = [(method, compile_path(path)[0], rule) for (method, path), rule in body_rules.items()]
         self._max_upload_bytes = max_upload_bytes
         self._arrivals = arrivals
 
@@ -66,9 +76,8 @@ class BodyLimits:
             await self._app(scope, receive, send)
             return
         is_upload = (scope["method"], scope["path"]) in self._upload_routes
-        report_type = self._report_type(scope)
-        is_report = report_type is not None
-        exchange = _Exchange(receive, send, *self._limit(is_upload=is_upload, is_report=is_report))
+        rule = self._rule(scope)
+        exchange = _Exchange(receive, send, *self._limit(rule, is_upload=is_upload))
         headers = Headers(scope=scope)
         try:
             exchange.check_length(headers)
@@ -76,8 +85,8 @@ class BodyLimits:
                 exchange.check_type(headers, UPLOAD_TYPE)
                 await self._upload(scope, exchange)
                 return
-            if report_type is not None:
-                exchange.check_type(headers, report_type)
+            if rule is not None:
+                exchange.check_type(headers, rule.media_type)
             if await exchange.read_ahead():
                 await self._app(scope, exchange.receive, exchange.send)
         except _RefusalError as error:
@@ -92,17 +101,17 @@ class BodyLimits:
         except BusyError as error:
             await busy_response(scope["path"], str(error))(scope, exchange.receive, exchange.send)
 
-    def _report_type(self, scope: Scope) -> str | None:
-        """Return as which media type the route takes a relay's report; None where it takes none."""
-        for method, path, media_type in self._report_routes:
+    def _rule(self, scope: Scope) -> BodyRule | None:
+        """Return the rule of the route; None where it has none of its own."""
+        for method, path, rule in self._rules:
             if scope["method"] == method and path.match(scope["path"]):
-                return media_type
+                return rule
         return None
 
-    def _limit(self, *, is_upload: bool, is_report: bool) -> tuple[int, str]:
+    def _limit(self, rule: BodyRule | None, *, is_upload: bool) -> tuple[int, str]:
         if is_upload:
             return self._max_upload_bytes, "; see max_upload_bytes in docs/reference/settings.md"
-        return MAX_REPORT_BYTES if is_report else MAX_JSON_BYTES, ""
+        return MAX_JSON_BYTES if rule is None else rule.most_bytes, ""
 
 
 def document(operations: Mapping[str, Mapping[str, dict[str, object]]], limits: Mapping[Route, int]) -> None:

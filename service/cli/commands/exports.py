@@ -84,6 +84,7 @@ def _add_whole(table: str, told: str) -> None:
 _add_whole("recordings", "Write the recordings with their verdicts, latest first.")
 _add_whole("starts", "Write the starts with their figures, latest first.")
 _add_whole("alarms", "Write the alarms, latest first.")
+_add_whole("inspections", "Write what inspections found, latest first.")
 
 
 def _export(

@@ -93,6 +93,27 @@ def condition(
     show_condition(url, motor, history=history, as_json=as_json)
 
 
+@commands.command("plan-stop")
+def plan_stop(
+    name: Annotated[str, typer.Argument(metavar="NAME", help="The motor, or with --site the site.")],
+    time: Annotated[
+        str | None,
+        typer.Argument(metavar="[TIME]", help="When it stops, as 2026-12-24 or 2026-12-24T06:00:00Z."),
+    ] = None,
+    url: Url = DEFAULT_URL,
+    *,
+    site: Annotated[bool, typer.Option("--site", help="All motors of a site.")] = False,
+    cancel: Annotated[bool, typer.Option("--cancel", help="Drop the plan.")] = False,
+    as_json: Json = False,
+) -> None:
+    """Plan when a motor or a site stops next: its condition says whether it may run until then."""
+    from service.cli.conditions.planned_stop import plan_stop
+
+    if (time is None) != cancel:
+        raise typer.BadParameter("expected either a TIME or --cancel")
+    plan_stop(url, name, time, is_site=site, as_json=as_json)
+
+
 @commands.command()
 def note(
     motor: MotorName,

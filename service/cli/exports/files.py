@@ -21,6 +21,7 @@ TABLES: dict[str, Callable[..., AbstractContextManager[Download]]] = {
     "recordings": ServiceClient.export_recordings,
     "starts": ServiceClient.export_starts,
     "alarms": ServiceClient.export_alarms,
+    "inspections": ServiceClient.export_inspections,
 }
 """How a service is asked for each table."""
 

@@ -30,6 +30,7 @@ from service.storage.models.conditions import (
 from service.storage.models.counts import StandingAlarmCountRow, StateCountRow
 from service.storage.models.deletions import DeletedRemoteRecordRow, DeletionRow, DiscardedFolderRow
 from service.storage.models.diagnoses import DiagnosisRow, JobRow, JobRunnerRow
+from service.storage.models.inspections import InspectionPictureRow, InspectionRow
 from service.storage.models.measurements import MeasurementRow
 from service.storage.models.notifications import NotificationAlarmRow, NotificationRow
 from service.storage.models.plant import IedRow, MotorRow, SiteRow
@@ -81,6 +82,8 @@ __all__ = [
     "FoldMarkRow",
     "GatewayRow",
     "IedRow",
+    "InspectionPictureRow",
+    "InspectionRow",
     "JobRow",
     "JobRunnerRow",
     "LeaseRow",

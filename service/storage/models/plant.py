@@ -9,11 +9,14 @@ from service.storage.states import ClockQuality, LinkState
 
 
 class SiteRow(Base):
+    """A site. planned_stop_ns: when all its motors stop next, as somebody planned; null without a plan."""
+
     __tablename__ = "sites"
 
     name: Mapped[str] = mapped_column(primary_key=True)
     description: Mapped[str]
     in_service: Mapped[bool]
+    planned_stop_ns: Mapped[int | None]
 
 
 class IedRow(Base):
@@ -39,7 +42,10 @@ class IedRow(Base):
 
 
 class MotorRow(Base):
-    """A motor. bus: with whose other motors it is compared. parameters_source: of the motors file."""
+    """A motor. bus: with whose other motors it is compared. parameters_source: of the motors file.
+
+    planned_stop_ns: when it stops next, as somebody planned; null without a plan.
+    """
 
     __tablename__ = "motors"
 
@@ -51,3 +57,4 @@ class MotorRow(Base):
     schedule: Mapped[str | None]
     bus: Mapped[str | None]
     parameters_source: Mapped[ParametersSource]
+    planned_stop_ns: Mapped[int | None]

@@ -55,6 +55,12 @@ from service.storage.records.diagnoses import (
 )
 from service.storage.records.fleet import CallingAlarms, FleetMotor
 from service.storage.records.health import MotorHealth, RecordedStarts
+from service.storage.records.inspections import (
+    Inspection,
+    InspectionCount,
+    InspectionPicture,
+    NewInspection,
+)
 from service.storage.records.measurements import ImportedLoad, Measurement, Sample
 from service.storage.records.notifications import (
     Gathering,
@@ -64,7 +70,7 @@ from service.storage.records.notifications import (
     Occurrence,
 )
 from service.storage.records.pages import Cursor, Page
-from service.storage.records.plant import IedEntry, MotorEntry, SiteEntry
+from service.storage.records.plant import IedEntry, MotorEntry, PlannedStop, SiteEntry, StopOf
 from service.storage.records.recordings import (
     RecordingEntry,
     RecordingFile,
@@ -149,6 +155,9 @@ __all__ = [
     "IedEntry",
     "ImportedLoad",
     "ImportedStart",
+    "Inspection",
+    "InspectionCount",
+    "InspectionPicture",
     "Job",
     "JobResult",
     "JobRunnerEntry",
@@ -166,6 +175,7 @@ __all__ = [
     "MotorEntry",
     "MotorHealth",
     "MotorVersion",
+    "NewInspection",
     "NewNotification",
     "NewPasskey",
     "Notification",
@@ -174,6 +184,7 @@ __all__ = [
     "OldRecording",
     "Page",
     "Passkey",
+    "PlannedStop",
     "Quarantine",
     "RecordObservation",
     "RecordedStarts",
@@ -196,6 +207,7 @@ __all__ = [
     "SiteEntry",
     "StartEntry",
     "StartReference",
+    "StopOf",
     "SupplyEntry",
     "SupplyQuantity",
     "SwingEntry",

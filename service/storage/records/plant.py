@@ -1,9 +1,25 @@
 """Sites, relays and motors as the repository hands them out."""
 
 from dataclasses import dataclass
+from enum import StrEnum
 
 from core.machines.parameters import ParametersSource
 from service.storage.states import ClockQuality, LinkState
+
+
+class StopOf(StrEnum):
+    """What a stop was planned of."""
+
+    MOTOR = "motor"
+    SITE = "site"
+
+
+@dataclass(frozen=True, slots=True)
+class PlannedStop:
+    """When a motor, or all motors of a site, stop next, as somebody planned."""
+
+    time_ns: int
+    of: StopOf
 
 
 @dataclass(frozen=True, slots=True)

@@ -29,6 +29,7 @@ from service.storage.repository.history.start_reference import StartReferenceRow
 from service.storage.repository.history.start_reports import StartReportRows
 from service.storage.repository.history.starts import StartRows
 from service.storage.repository.history.thinned_trend import ThinnedTrendRows
+from service.storage.repository.inspections import InspectionRows
 from service.storage.repository.jobs.notices import JobNoticeRows
 from service.storage.repository.jobs.queue import JobRows
 from service.storage.repository.jobs.repetitions import RepetitionRows
@@ -40,6 +41,7 @@ from service.storage.repository.motor_health import MotorHealthRows
 from service.storage.repository.motor_versions import MotorVersionRows
 from service.storage.repository.notifications import NotificationRows
 from service.storage.repository.overviews import OverviewRows
+from service.storage.repository.planned_stops import PlannedStopRows
 from service.storage.repository.plant import PlantRows
 from service.storage.repository.recordings.baselines import BaselineRows
 from service.storage.repository.recordings.copies import CopyRows
@@ -61,6 +63,7 @@ from service.storage.repository.state_counts import StateCounts
 
 class Repository(
     PlantRows,
+    PlannedStopRows,
     SiteRows,
     LinkRows,
     FindingsRows,
@@ -92,6 +95,7 @@ class Repository(
     ObservationRows,
     ConditionDayRows,
     ConditionEventRows,
+    InspectionRows,
     ConditionRows,
     FoldingRows,
     MotorConditionRows,

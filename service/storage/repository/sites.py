@@ -11,6 +11,7 @@ from service.storage.models import (
     MotorRow,
     RecordingRequestRow,
     RecordingRow,
+    SiteRow,
 )
 from service.storage.repository.sessions import Sessions
 
@@ -18,6 +19,7 @@ from service.storage.repository.sessions import Sessions
 class AtSite(StrEnum):
     """What is at a site, and has a key by which it is asked for."""
 
+    SITE = "site"
     MOTOR = "motor"
     RELAY = "relay"
     RECORDING = "recording"
@@ -27,6 +29,7 @@ class AtSite(StrEnum):
 
 
 TABLES: Mapping[AtSite, type[Base]] = {
+    AtSite.SITE: SiteRow,
     AtSite.MOTOR: MotorRow,
     AtSite.RELAY: IedRow,
     AtSite.RECORDING: RecordingRow,

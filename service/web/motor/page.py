@@ -7,7 +7,7 @@ from typing import Final
 from core.diagnosis.verdict import Verdict
 from core.machines.parameters import MachineKind
 from core.units import NANOSECONDS_PER_DAY
-from service.api.conditions.documents import condition_document
+from service.api.conditions.documents import condition_document, until_stop_document
 from service.api.conditions.schemas import Condition
 from service.api.context import ApiContext
 from service.condition.staleness import stale_after_ns
@@ -16,6 +16,7 @@ from service.storage.records import (
     Alarm,
     ConditionChange,
     ConditionEvent,
+    Inspection,
     MotorHealth,
     RecordingEntry,
     RecordingRequest,
@@ -28,6 +29,7 @@ from service.web.motor.measured import MeasuredValues, measured_values
 from service.web.motor.nameplate import KnownMotor, known_motor
 from service.web.motor.parameters import ParametersSection, parameters_section
 from service.web.motor.rotor import RotorSection, rotor_section
+from service.web.motor.stop import StopLine, stop_line
 from service.web.motor.supply import SupplySection, supply_section
 from service.web.motor.swings import SwingSection, swing_section
 from service.web.motor.trend import SPANS, TrendSpan, told, trend_chart
@@ -36,6 +38,7 @@ from service.web.motor.verdict import MotorVerdict, motor_verdict
 MOST_ALARMS: Final = 10
 MOST_NOTES: Final = 20
 MOST_CHANGES: Final = 10
+MOST_INSPECTIONS: Final = 10
 MOST_RECORDINGS: Final = 8
 MOST_REQUESTS: Final = 3
 MEASURED_WITHIN_NS: Final = 30 * NANOSECONDS_PER_DAY
@@ -57,6 +60,7 @@ class MotorPage:
     health: MotorHealth
     condition: Condition
     verdict: MotorVerdict
+    stop: StopLine | None
     trend: MotorTrend
     answer: AnswerSection
     rotor: RotorSection
@@ -68,6 +72,7 @@ class MotorPage:
     measured: MeasuredValues | None
     alarms: Sequence[Alarm]
     notes: Sequence[ConditionEvent]
+    inspections: Sequence[Inspection]
     more_notes: bool
     changes: Sequence[ConditionChange]
     recordings: Sequence[RecordingEntry]
@@ -92,6 +97,7 @@ def motor_page(context: ApiContext, name: str, span: TrendSpan, now_ns: int) -> 
         verdict=motor_verdict(
             health, condition, now_ns, oldest_ns, None if known is None else known.motor.limits.fault_level
         ),
+        stop=stop_line(until_stop_document(repository, health.condition, now_ns, oldest_ns), now_ns),
         trend=_trend(repository, name, span, condition, known, now_ns),
         rotor=rotor_section(repository, name, MachineKind.CAGE if known is None else known.motor.kind),
         answer=answer_section(repository, name),
@@ -105,6 +111,7 @@ def motor_page(context: ApiContext, name: str, span: TrendSpan, now_ns: int) -> 
         measured=measured_values(repository.latest_sample(name, since_ns=now_ns - MEASURED_WITHIN_NS)),
         alarms=repository.open_alarms(motor=name, limit=MOST_ALARMS).items,
         notes=notes.items,
+        inspections=repository.inspections(name, limit=MOST_INSPECTIONS).items,
         more_notes=notes.next is not None,
         changes=repository.condition_history(name, limit=MOST_CHANGES).items,
         recordings=recordings,

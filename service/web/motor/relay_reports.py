@@ -12,6 +12,7 @@ from core.time_stamps import nanoseconds
 from service.access.permissions import Permission
 from service.api.access.requirements import require
 from service.api.document import Name
+from service.api.limits.body_limits import REPORT_IN_FORM
 from service.api.problems import ProblemError
 from service.api.recordings.routes import FormLimits
 from service.api.relay_reports.keeping import keep_brought
@@ -21,7 +22,7 @@ from service.web.view import Looking, View
 
 router = APIRouter()
 
-REPORTS: Final = frozenset({("POST", "/motors/{name}/reports")})
+BODIES: Final = {("POST", "/motors/{name}/reports"): REPORT_IN_FORM}
 """Routes that take a relay's report in a form."""
 FORM_LIMITS: Final[FormLimits] = {"max_files": 2, "max_fields": 4, "max_part_size": 100}
 

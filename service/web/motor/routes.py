@@ -9,16 +9,20 @@ from fastapi.responses import JSONResponse
 from starlette.responses import Response
 
 from core.condition.events import EventKind
+from core.condition.kinds import Kind
 from core.units import NANOSECONDS_PER_SECOND
 from service.access.permissions import Permission
 from service.api.access.requirements import require
 from service.api.conditions.notes import keep_note
-from service.api.conditions.schemas import NoteRequest, RestartRequest, Withdrawal
+from service.api.conditions.planned_stops import keep_stop
+from service.api.conditions.schemas import NoteRequest, RestartRequest, StopRequest, Withdrawal
 from service.api.document import Name
 from service.api.problems import ProblemError
 from service.api.recordings.diagnoses import queue_diagnosis
 from service.api.recordings.diagnosis_schemas import DiagnosisRequest
+from service.storage.records import StopOf
 from service.storage.repository.sites import AtSite
+from service.storage.states import InspectionOutcome
 from service.web.addresses import address
 from service.web.forms import document_of_form
 from service.web.live.routes import live_address
@@ -57,6 +61,8 @@ def show_motor(view: Looking, name: Name, days: Annotated[str, Query(max_length=
         live=live,
         here=address("/motors", name),
         kinds=_kinds(view),
+        told_kinds=list(Kind),
+        outcomes=list(InspectionOutcome),
         long_record_s=view.context.settings.long_record_s,
         undo=latest_to_undo(page.notes, view.asking.actor.name, view.now_ns),
     )
@@ -124,7 +130,7 @@ def write_note(
     anew: Annotated[bool, Form()] = False,
 ) -> Response:
     """Write into the motor's logbook. All kinds but a plain note change what its condition follows from."""
-    wanted = document_of_form(NoteRequest, {"text": text, "kind": kind, "time": _utc(time)})
+    wanted = document_of_form(NoteRequest, {"text": text, "kind": kind, "time": utc(time)})
     if wanted.kind is not EventKind.NOTE:
         view.asking.demand(Permission.CONFIGURE, f"tell of {wanted.kind.value}")
         if not anew:
@@ -167,7 +173,32 @@ def undo_note(view: Looking, name: Name, note_id: UUID) -> Response:
     return _done(view, name, "undone")
 
 
-def _utc(text: str) -> str:
+@router.post("/motors/{name}/planned-stop", dependencies=[require(Permission.NOTE)])
+def plan_stop(
+    view: Looking,
+    name: Name,
+    time: Annotated[str, Form(max_length=40)],
+    of: Annotated[StopOf, Form()] = StopOf.MOTOR,
+) -> Response:
+    """Plan when the motor, or its whole site, stops next."""
+    wanted = document_of_form(StopRequest, {"time": utc(time)})
+    keep_stop(view.context, of, _named(view, name, of), wanted.time, view.asking.actor)
+    return _done(view, name, "stop-planned")
+
+
+@router.post("/motors/{name}/planned-stop/cancellation", dependencies=[require(Permission.NOTE)])
+def cancel_stop(view: Looking, name: Name, of: Annotated[StopOf, Form()] = StopOf.MOTOR) -> Response:
+    """Drop the plan of a stop, of the motor or of its site."""
+    keep_stop(view.context, of, _named(view, name, of), None, view.asking.actor)
+    return _done(view, name, "stop-cancelled")
+
+
+def _named(view: View, motor: str, of: StopOf) -> str:
+    """Return the name of what is meant: the motor, or its site. Who sees a motor may see its site."""
+    return motor if of is StopOf.MOTOR else view.context.repository.motor(motor).site
+
+
+def utc(text: str) -> str:
     """Return the time of a form's field, which is in UTC and has no offset, as the API takes it."""
     if "T" not in text or text.endswith("Z"):
         return text

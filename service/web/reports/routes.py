@@ -38,6 +38,7 @@ def show_reports(view: Looking) -> Response:
         months=_months(view.now_ns, settings.notifications.time_zone),
         time_zone=settings.notifications.time_zone,
         mails=settings.reports.mails,
+        inspections=view.context.repository.inspection_counts(),
     )
 
 

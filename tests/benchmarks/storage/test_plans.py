@@ -43,6 +43,8 @@ DO_NOT_GROW = frozenset(
         "discarded_folders",
         "fold_marks",
         "gateways",
+        "inspection_pictures",
+        "inspections",
         "job_runners",
         "leases",
         "link_figures",

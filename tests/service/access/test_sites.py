@@ -17,6 +17,7 @@ import httpx
 import pytest
 from fastapi.routing import iter_route_contexts
 
+from core.condition.kinds import Kind
 from service.access.permissions import PERMISSIONS_OF, Permission
 from service.api import ApiContext
 from service.api.access.requirements import requirement_of
@@ -27,9 +28,9 @@ from service.plant import Plant, PlantMotor, Site
 from service.recording_store.folder import FolderStore
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect
-from service.storage.records import Role
+from service.storage.records import NewInspection, Role
 from service.storage.repository.sites import AtSite
-from service.storage.states import AlarmKind
+from service.storage.states import AlarmKind, InspectionOutcome
 from service.web.app import create_site
 from testing.service.accounts import TESTS, token_of
 from testing.service.diagnosed import add_diagnosed
@@ -111,9 +112,12 @@ def _things(repository: Repository, store: RecordingStore, name: str, its_relay:
     gone = add_diagnosed(repository, store, fault(), NOW_NS + 1, motor=name, name="E2")
     repository.delete_recording(gone, "tested", by=TESTS, now_ns=NOW_NS + 2)
     request = repository.request_recording(name, by=TESTS, now_ns=NOW_NS)
+    found = NewInspection(NOW_NS, Kind.NONE, "", InspectionOutcome.NOTHING_FOUND, "tested")
+    repository.add_inspection(name, found, by=TESTS, now_ns=NOW_NS)
     alarm = repository.raise_alarm(its_relay, AlarmKind.FILE_REFUSED, f"{name}.CFG", "outside", now_ns=NOW_NS)
     return There(
         {
+            AtSite.SITE: repository.motor(name).site,
             AtSite.MOTOR: name,
             AtSite.RELAY: its_relay,
             AtSite.RECORDING: recording,
@@ -197,7 +201,10 @@ def test_what_is_at_another_site_is_forbidden_to_every_role(places: Places) -> N
 def _of_nothing(path: str) -> str:
     """A path about things that there are not."""
     nothing = There(
-        {what: "NOBODY" if what in (AtSite.MOTOR, AtSite.RELAY) else str(uuid.UUID(int=1)) for what in AtSite}
+        {
+            what: "NOBODY" if what in (AtSite.SITE, AtSite.MOTOR, AtSite.RELAY) else str(uuid.UUID(int=1))
+            for what in AtSite
+        }
     )
     return nothing.path(path)
 

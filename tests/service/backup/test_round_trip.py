@@ -9,6 +9,7 @@ from threading import Event, Thread
 
 import pytest
 
+from core.condition.kinds import Kind
 from service.backup.errors import BackupError, BackupStoppedError
 from service.backup.layout import POOL
 from service.backup.manifest import read_sums
@@ -19,6 +20,9 @@ from service.storage import Repository, connect, migrate
 from service.storage.records import NewPasskey, Role
 from service.storage.states import BackupState
 from testing.service.accounts import TESTS
+from service.storage.records import SERVICE, InspectionPicture, NewInspection
+from service.storage.states import BackupState, InspectionOutcome
+from testing.service.pictures import SMALL_PNG
 from testing.service.plants import NOW_NS
 from testing.waiting import eventually
 from tests.service.backup.conftest import Data, Rows, files_below, new_name
@@ -29,6 +33,9 @@ def test_database_and_recordings_come_back_in_an_empty_place(
 ) -> None:
     for number in range(3):
         data.record(f"R{number}")
+    found = NewInspection(NOW_NS, Kind.SHORTED_TURNS, "shorted turns", InspectionOutcome.CONFIRMED, "coil 7")
+    picture = InspectionPicture("image/png", SMALL_PNG)
+    told = data.repository.add_inspection("PUMP-A1", found, [picture], by=SERVICE, now_ns=NOW_NS)
     made = data.back_up()
     assert (made.manifest.recordings, made.copied, made.manifest.lost) == (3, 3, [])
     before = data.rows()
@@ -40,6 +47,7 @@ def test_database_and_recordings_come_back_in_an_empty_place(
     engine = connect(empty_place.database_url)
     again = Repository(engine)
     assert again.request_diagnosis(again.recordings(limit=1).items[0].id, now_ns=NOW_NS)
+    assert again.inspection_picture("PUMP-A1", told.id, 1) == picture
     assert again.latest_verified_backup() is None, "that one was under way when it was copied"
     engine.dispose()
 

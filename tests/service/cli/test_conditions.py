@@ -292,3 +292,21 @@ def test_what_is_wrong_is_said(
 ) -> None:
     assert main([*words, "--url", str(client.base_url)]) == status
     assert message in capsys.readouterr().err
+
+
+def test_a_stop_is_planned_and_the_condition_answers(
+    client: httpx.Client, repository: Repository, capsys: pytest.CaptureFixture[str]
+) -> None:
+    url = str(client.base_url)
+    assert main(["plan-stop", "PUMP-A1", "2090-12-24", "--url", url]) == 0
+    assert "PUMP-A1: stops 2090-12-24" in capsys.readouterr().out
+    assert main(["plan-stop", "FACTORY_A", "2080-12-24", "--site", "--json", "--url", url]) == 0
+    assert json.loads(capsys.readouterr().out)["of"] == "site"
+    assert main(["condition", "PUMP-A1", "--url", url]) == 0
+    words = capsys.readouterr().out
+    assert "planned stop" in words
+    assert "2080-12-24" in words
+    assert "not assessed: the latest record is too old" in words
+    assert main(["plan-stop", "FACTORY_A", "--site", "--cancel", "--url", url]) == 0
+    assert "no stop is planned" in capsys.readouterr().out
+    assert main(["plan-stop", "PUMP-A1", "--url", url]) == 2

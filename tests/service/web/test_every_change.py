@@ -7,9 +7,10 @@ import pytest
 from fastapi.routing import iter_route_contexts
 
 from service.web.app import create_site
+from testing.service.pictures import SMALL_PNG
 from tests.core.relay_reports.examples import SER
 from tests.docs.role_tables import is_page
-from tests.service.audited import API, ME, PASSWORD, Changes, Prepared, audited_service, sent
+from tests.service.audited import API, INSPECTION, ME, PASSWORD, Changes, Prepared, audited_service, sent
 
 MOTOR = "/motors/PUMP-A1"
 
@@ -35,6 +36,7 @@ def _password(it: Prepared) -> httpx.Response:
 
 
 AGAIN = {"password": PASSWORD}
+PICTURE = {"pictures": ("a.png", SMALL_PNG)}
 
 
 FORMS: Changes = {
@@ -166,6 +168,24 @@ FORMS: Changes = {
     "POST /motors/{name}/notes/{note_id}/undo": (
         lambda it: it.client.post(f"{MOTOR}/notes/{it.note(kind='maintenance')}/undo"),
         "note-withdrawn",
+    ),
+    "POST /motors/{name}/planned-stop": (
+        lambda it: it.client.post(f"{MOTOR}/planned-stop", data={"time": "2090-12-24T06:00"}),
+        "stop-planned",
+    ),
+    "POST /motors/{name}/planned-stop/cancellation": (
+        lambda it: it.client.post(f"{MOTOR}/planned-stop/cancellation", data={"of": "site"}),
+        "stop-cancelled",
+    ),
+    "POST /motors/{name}/inspections": (
+        lambda it: it.client.post(
+            f"{MOTOR}/inspections", data=INSPECTION, files={"pictures": ("a.png", SMALL_PNG)}
+        ),
+        "inspection-added",
+    ),
+    "POST /motors/{name}/inspections/{inspection_id}/withdrawal": (
+        lambda it: it.client.post(f"{_own(it.inspection())}/withdrawal", data={"reason": "wrong motor"}),
+        "inspection-withdrawn",
     ),
     "POST /motors/{name}/reports": (
         lambda it: it.client.post(f"{MOTOR}/reports", files={"report": ("SER.TXT", SER.encode())}),

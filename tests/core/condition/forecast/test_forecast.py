@@ -8,7 +8,7 @@ import pytest
 from numpy.typing import NDArray
 
 from core.condition.assessment import Level
-from core.condition.forecast.forecast import forecast, limit_ahead
+from core.condition.forecast.forecast import QUANTILES, forecast, limit_ahead
 from core.condition.forecast.outcome import Forecast
 from core.units import NANOSECONDS_PER_DAY
 
@@ -168,6 +168,25 @@ def test_a_level_that_drifts_with_the_winding_s_temperature_shows_no_trend() -> 
     found = forecast([(k * NANOSECONDS_PER_DAY // 24, float(m)) for k, m in enumerate(levels)], LIMIT)
     assert found.days is None
     assert found.growth_per_day == pytest.approx(0.0004 * PER_DAY / 199.0, rel=0.2)
+
+
+def test_chances_are_those_of_the_days_and_less_sure_of_a_level_that_is_scaled() -> None:
+    rng = np.random.default_rng(14)
+    levels = [
+        (k * NANOSECONDS_PER_DAY // 24, 1e-5 * k + NOISE * float(rng.standard_normal())) for k in range(200)
+    ]
+    plain = forecast(levels, LIMIT)
+    assert plain.chances is not None
+    assert plain.days is not None
+    for share, days in zip(QUANTILES, plain.days, strict=True):
+        assert plain.reached_within(days) == pytest.approx(share, abs=0.08), "between times that are kept"
+    assert plain.reached_within(0.0) == 0.0
+    assert plain.reached_within(4000.0) is None
+    assert list(plain.chances) == sorted(plain.chances)
+    scaled = forecast(levels, LIMIT, today=Level(1e-5 * 199, 1e-6, 0)).chances
+    assert scaled is not None
+    assert all(one >= other - 1e-3 for one, other in zip(scaled, plain.chances, strict=True))
+    assert Forecast(LIMIT).reached_within(1.0) is None
 
 
 def test_growth_that_has_stopped_shows_no_trend_any_more() -> None:

@@ -6,12 +6,24 @@ import pytest
 
 from service.api import create_app
 from testing.service.accounts import auditor
+from testing.service.pictures import SMALL_PNG
 from tests.core.relay_reports.examples import MSR
-from tests.service.audited import API, MOTOR, PASSWORD, SHELVED, Changes, Prepared, audited_service, sent
+from tests.service.audited import (
+    API,
+    INSPECTION,
+    MOTOR,
+    PASSWORD,
+    SHELVED,
+    Changes,
+    Prepared,
+    audited_service,
+    sent,
+)
 
 CHANGING = {"post", "put", "patch", "delete"}
 
 AGAIN = {"password": PASSWORD}
+SITE = "FACTORY_A"
 
 
 REQUESTS: Changes = {
@@ -30,6 +42,38 @@ REQUESTS: Changes = {
     "POST /api/v1/motors/{name}/reference": (
         lambda it: it.client.post(f"{MOTOR}/reference", json={"reason": "tested"}),
         "reference-restarted",
+    ),
+    "PUT /api/v1/motors/{name}/planned-stop": (
+        lambda it: it.client.put(f"{MOTOR}/planned-stop", json={"time": "2090-12-24"}),
+        "stop-planned",
+    ),
+    "DELETE /api/v1/motors/{name}/planned-stop": (
+        lambda it: it.client.delete(f"{MOTOR}/planned-stop"),
+        "stop-cancelled",
+    ),
+    "PUT /api/v1/sites/{name}/planned-stop": (
+        lambda it: it.client.put(f"{API}/sites/{SITE}/planned-stop", json={"time": "2090-12-24"}),
+        "stop-planned",
+    ),
+    "DELETE /api/v1/sites/{name}/planned-stop": (
+        lambda it: it.client.delete(f"{API}/sites/{SITE}/planned-stop"),
+        "stop-cancelled",
+    ),
+    "POST /api/v1/motors/{name}/inspections": (
+        lambda it: it.client.post(f"{MOTOR}/inspections", json=INSPECTION),
+        "inspection-added",
+    ),
+    "POST /api/v1/motors/{name}/inspections/{inspection_id}/pictures": (
+        lambda it: it.client.post(
+            f"{it.inspection()}/pictures",
+            content=SMALL_PNG,
+            headers={"Content-Type": "application/octet-stream"},
+        ),
+        "inspection-added",
+    ),
+    "POST /api/v1/motors/{name}/inspections/{inspection_id}/withdrawal": (
+        lambda it: it.client.post(f"{it.inspection()}/withdrawal", json={"reason": "wrong motor"}),
+        "inspection-withdrawn",
     ),
     "PUT /api/v1/motors/{name}/baseline": (
         lambda it: it.client.put(f"{MOTOR}/baseline", json=it.baseline()),

@@ -56,7 +56,7 @@ def record(repository: Repository, store: RecordingStore) -> Record:
     return add
 
 
-WHOLE = ("finding", "urgency", "causes", "parts")
+WHOLE = ("finding", "urgency", "causes", "parts", "until_stop")
 """Keys of the document that are of the whole motor, beside those of its stator."""
 
 
@@ -86,7 +86,7 @@ def test_nothing_is_known_of_a_motor_before_its_first_record(client: httpx.Clien
         "motor": "PUMP-A1",
         "state": "unknown",
         "kind": "none",
-        "forecast": {"limit": None, "days": None},
+        "forecast": {"limit": None, "days": None, "chances": None},
         "stale": True,
         "finding": "",
         "urgency": "none",

@@ -11,6 +11,7 @@ import httpx
 import pytest
 
 from service.api import ApiContext
+from service.api.inspections.pictures import MAX_PICTURE_BYTES
 from service.api.limits.body_limits import MAX_JSON_BYTES, MAX_REPORT_BYTES
 from service.api.problems import MAX_ERRORS
 from service.storage import Repository
@@ -113,6 +114,7 @@ def test_every_route_refuses_a_body_beyond_its_limit(
     assert larger == {
         ("POST", "/api/v1/recordings"): context.settings.max_upload_bytes,
         ("POST", "/api/v1/motors/{name}/reports"): MAX_REPORT_BYTES,
+        ("POST", "/api/v1/motors/{name}/inspections/{inspection_id}/pictures"): MAX_PICTURE_BYTES,
     }
 
 

@@ -1,0 +1,1 @@
+"""What people found when they inspected motors, and how often the service was right."""
