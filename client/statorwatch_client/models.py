@@ -668,11 +668,14 @@ class LoadImport(TypedDict):
 class LoginRequest(TypedDict):
     """
     Who logs in. code: of their authenticator app, or a recovery code, where they have a second factor.
+
+    passkey: in place of the code, what a browser's `PublicKeyCredential.toJSON()` gives, as text.
     """
 
     name: str
     password: str
     code: NotRequired[str | None]
+    passkey: NotRequired[str | None]
 
 
 class LoginWays(TypedDict):
@@ -758,6 +761,18 @@ class Losses(TypedDict):
 
 
 MeasurementSource: TypeAlias = Literal["load-profile", "polled"]
+
+
+class NewPasskey(TypedDict):
+    """
+    A passkey that was added. recovery_codes: for who had no second factor, shown this once.
+    """
+
+    id: str
+    label: str
+    created_time: str
+    used_time: str | None
+    recovery_codes: list[str]
 
 
 class NewPassword(TypedDict):
@@ -933,6 +948,44 @@ class PartUntilStop(TypedDict):
     probability: float | None
     reason: str
     is_beyond: bool
+
+
+class Passkey(TypedDict):
+    """
+    A passkey of a user. used_time: when it last let them in.
+    """
+
+    id: str
+    label: str
+    created_time: str
+    used_time: str | None
+
+
+class PasskeyAnswer(TypedDict):
+    """
+    What a device has made: `PublicKeyCredential.toJSON()`, as text. label: what its owner calls it.
+    """
+
+    label: str
+    answer: str
+
+
+class PasskeyOptions(TypedDict):
+    """
+    What browsers ask a device with: PublicKeyCredentialCreationOptionsJSON, or ...RequestOptionsJSON.
+
+    `PublicKeyCredential.parseCreationOptionsFromJSON` and `parseRequestOptionsFromJSON` read them.
+    """
+
+    options: dict[str, Any]
+
+
+class Passkeys(TypedDict):
+    """
+    All passkeys of a user.
+    """
+
+    items: list[Passkey]
 
 
 class PasswordChange(TypedDict):
@@ -2288,6 +2341,7 @@ class ListedRecording(TypedDict):
     duration_s: float | None
     pre_trigger_s: float | None
     parts: list[str] | None
+    copy_of: str | None
     announced_time: str
     fetched_time: str | None
     recorded_time: str | None
@@ -2563,6 +2617,7 @@ class Recording(TypedDict):
     operation_remark: why the motor's parameters cannot be estimated from this start.
     duration_s: its length; pre_trigger_s: how much of it is before the trigger; null before it was read.
     parts: the recordings that it was joined from (source joined); null of others.
+    copy_of: the recording of the same event, with values as fine or finer, that counts in its place.
     That time is the relay's; `clock_...` is the latest comparison of its clock when the recording was stored,
     null where that was not made within an hour of it.
     """
@@ -2584,6 +2639,7 @@ class Recording(TypedDict):
     duration_s: float | None
     pre_trigger_s: float | None
     parts: list[str] | None
+    copy_of: str | None
     announced_time: str
     fetched_time: str | None
     recorded_time: str | None
@@ -3113,6 +3169,8 @@ class PageTrendPoint(TypedDict):
 class RecordingDetails(TypedDict):
     """
     A recording with its files and its latest diagnosis.
+
+    copies: recordings of the same event in whose place it counts.
     """
 
     clock_offset_s: float | None
@@ -3132,9 +3190,11 @@ class RecordingDetails(TypedDict):
     duration_s: float | None
     pre_trigger_s: float | None
     parts: list[str] | None
+    copy_of: str | None
     announced_time: str
     fetched_time: str | None
     recorded_time: str | None
+    copies: list[str]
     files: list[RecordingFile]
     diagnosis: Diagnosis | None
 

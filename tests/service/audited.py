@@ -157,6 +157,7 @@ class Prepared:
                 return session.post(path, json=json and made, data=data and made)
             kept = session.post(f"{API}/account/passkeys", json=made).json()
             return session.post(path.replace("{passkey_id}", kept["id"]), json=json, data=data)
+
     def inspection(self) -> str:
         kept = self.client.post(f"{MOTOR}/inspections", json=INSPECTION)
         return str(kept.headers["location"])

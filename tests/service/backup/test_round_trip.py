@@ -17,11 +17,9 @@ from service.backup.restoring import Place, restore_backup
 from service.backup.verification import verify_backup
 from service.retention.deletion import delete_recording
 from service.storage import Repository, connect, migrate
-from service.storage.records import NewPasskey, Role
-from service.storage.states import BackupState
-from testing.service.accounts import TESTS
-from service.storage.records import SERVICE, InspectionPicture, NewInspection
+from service.storage.records import SERVICE, InspectionPicture, NewInspection, NewPasskey, Role
 from service.storage.states import BackupState, InspectionOutcome
+from testing.service.accounts import TESTS
 from testing.service.pictures import SMALL_PNG
 from testing.service.plants import NOW_NS
 from testing.waiting import eventually
