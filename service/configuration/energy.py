@@ -8,5 +8,5 @@ class EnergySettings(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
-    price_per_kWh: float | None = Field(default=None, gt=0, le=1e6)
+    price_per_kWh: float | None = Field(default=None, ge=0, le=1e6)
     currency: str = Field(default="", max_length=10, pattern=r"^[^\x00-\x1f\x7f]*$")
