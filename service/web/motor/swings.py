@@ -19,12 +19,16 @@ DIGITS: Final = 3
 
 @dataclass(frozen=True, slots=True)
 class SwingSection:
-    """What the page says of air gap and load. words: what stands out. chart: None where no record tells."""
+    """What the page says of air gap and load. words: what stands out. chart: None where no record tells.
+
+    is_assessed: whether the latest record tells of either.
+    """
 
     latest: SwingEntry | None
     words: Sequence[str]
     reasons: Sequence[str]
     chart: Chart | None
+    is_assessed: bool = False
 
 
 def swing_section(repository: Repository, motor: str) -> SwingSection:
@@ -38,16 +42,21 @@ def swing_section(repository: Repository, motor: str) -> SwingSection:
         f"load: {one}" for one in swing_words(latest.eccentricity, latest.pulsation)
     ]
     reasons = (*latest.eccentricity.reasons, *latest.pulsation.reasons)
-    return SwingSection(latest, words, reasons, _chart(motor, entries))
+    figures = (latest.eccentricity.permeance_ripple, latest.pulsation.load_torque)
+    is_assessed = any(one is not None for one in figures)
+    return SwingSection(latest, words, reasons, _chart(motor, entries), is_assessed)
 
 
-def _chart(motor: str, entries: Sequence[SwingEntry]) -> Chart:
+def _chart(motor: str, entries: Sequence[SwingEntry]) -> Chart | None:
     lines = (
         ("air-gap eccentricity", [one.eccentricity.permeance_ripple for one in entries], Tone.ACCENT),
         ("ripple that would be told", [one.eccentricity.detection_limit for one in entries], Tone.MUTED),
         ("torque once a turn", [one.eccentricity.load_torque for one in entries], Tone.INK),
         ("largest torque oscillation", [one.pulsation.load_torque for one in entries], Tone.MODEL),
     )
+    told = [line for line in lines if any(value is not None for value in line[1])]
+    if not told:
+        return None
     return Chart(
         key="swings",
         caption=f"Air gap and load of {motor}",
@@ -58,7 +67,7 @@ def _chart(motor: str, entries: Sequence[SwingEntry]) -> Chart:
         x=[round(one.time_ns / NANOSECONDS_PER_SECOND, 3) for one in entries],
         series=[
             Series(label, [_percent(value) for value in values], "%", tone, Kind.LINE)
-            for label, values, tone in lines
+            for label, values, tone in told
         ],
         summary=f"{len(entries)} record{'s' if len(entries) > 1 else ''}.",
     )
