@@ -22,7 +22,7 @@ from tests.quick.reach import Reached, imports_of, reached_tests
 ROOT: Final = Path(__file__).parents[2]
 KEPT: Final = ROOT / ".quick"
 """What tests took, and the imports of modules that did not change; git does not know it."""
-END_S: Final = 8.0
+END_S: Final = 12.0
 """No test begins that would end later than so long before the end."""
 SHOWN: Final = 12
 STYLES: Final = (["check"], ["format", "--check"])
