@@ -11,7 +11,7 @@ import grimp
 import pytest
 
 from tests.docs.pages import ROOT
-from tests.quick.__main__ import reached_by
+from tests.quick.__main__ import reached_by, run_tests
 from tests.quick.budget import COLLECT_S, END, PROCESSES, SECONDS, START_S, UNKNOWN_S, within
 from tests.quick.changes import changed_files, changed_modules, module_of
 from tests.quick.reach import Reached, imports_of, reached_tests
@@ -25,6 +25,10 @@ TEXTS = {
     "service/web/motor/routes.py": 'view.page("motor/page.html")',
     "core/losses/cost.py": "",
 }
+LONG = """import threading
+def test_wrong(): assert False
+def test_without_end(): threading.Event().wait()
+"""
 MODULES = {"service.web.motor.routes", "core.losses", "core.losses.cost", "statorwatch_client.client"}
 
 
@@ -154,3 +158,15 @@ def test_no_test_begins_too_late_and_what_ran_is_noted(tmp_path: Path) -> None:
     seconds = json.loads(kept.read_text())
     assert seconds["test_b.py::test_long"] == 1000
     assert seconds["test_a.py::test_last"] < 0.1
+
+
+@pytest.mark.campaign
+def test_a_run_that_is_stopped_says_whether_a_test_failed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join((str(ROOT), os.environ.get("PYTHONPATH", ""))))
+    (tmp_path / ".quick").mkdir()
+    (tmp_path / "test_long.py").write_text(LONG)
+    now_s = time.time()
+    assert run_tests([Reached("test_long.py", 1)], tmp_path, end_s=now_s + 100, stop_s=now_s + 30) == 1
+    assert "stopped, no time" in capsys.readouterr().out
