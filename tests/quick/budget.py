@@ -25,6 +25,9 @@ END = "STATORWATCH_QUICK_END"
 SECONDS = "STATORWATCH_QUICK_SECONDS"
 """Environment: when the last test is to be through [s since 1970], and the file of what each test took."""
 
+FAILED = "failed"
+"""A file beside that, where a test failed: pytest does not say so of a run that was stopped."""
+
 NO_TIME = "no time for it"
 
 
@@ -70,6 +73,8 @@ class Budget:
             pytest.skip(NO_TIME)
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        if report.failed:
+            self._path.with_name(FAILED).touch()
         if report.skipped:
             self._skipped.add(report.nodeid)
         elif report.nodeid not in self._skipped:

@@ -34,7 +34,7 @@ def is_test(module: str) -> bool:
 def reached_tests(changed: Collection[str], importers: Mapping[str, Iterable[str]]) -> list[Reached]:
     """Return the test files that a change of modules can break, nearest first.
 
-    Of those equally far, the ones of the changed module's own room come first.
+    After tests that changed themselves come those of the changed module's own room, however far by imports.
     """
     distances = dict.fromkeys(changed, 0)
     edge = list(changed)
@@ -52,7 +52,12 @@ def reached_tests(changed: Collection[str], importers: Mapping[str, Iterable[str
         for module, distance in distances.items()
         if is_test(module)
     ]
-    return sorted(found, key=lambda one: (one.distance, -_shared(one.file, rooms), one.file))
+    own = tuple(f"{room.rpartition('/')[0]}/" for room in rooms)
+    return sorted(found, key=lambda one: (_rank(one, own), -_shared(one.file, rooms), one.file))
+
+
+def _rank(one: Reached, own: tuple[str, ...]) -> tuple[bool, int]:
+    return one.distance > 0 and not one.file.startswith(own), one.distance
 
 
 def _shared(file: str, rooms: Iterable[str]) -> int:

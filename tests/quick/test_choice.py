@@ -11,7 +11,7 @@ import grimp
 import pytest
 
 from tests.docs.pages import ROOT
-from tests.quick.__main__ import reached_by
+from tests.quick.__main__ import reached_by, run_tests
 from tests.quick.budget import COLLECT_S, END, PROCESSES, SECONDS, START_S, UNKNOWN_S, within
 from tests.quick.changes import changed_files, changed_modules, module_of
 from tests.quick.reach import Reached, imports_of, reached_tests
@@ -25,6 +25,10 @@ TEXTS = {
     "service/web/motor/routes.py": 'view.page("motor/page.html")',
     "core/losses/cost.py": "",
 }
+LONG = """import threading
+def test_wrong(): assert False
+def test_without_end(): threading.Event().wait()
+"""
 MODULES = {"service.web.motor.routes", "core.losses", "core.losses.cost", "statorwatch_client.client"}
 
 
@@ -65,9 +69,13 @@ def test_a_test_is_as_far_as_the_imports_between() -> None:
     assert reached_tests([], importers) == []
 
 
-def test_of_those_equally_far_the_own_room_comes_first() -> None:
-    tests = {"tests.api.test_a", "tests.service.storage.test_z"}
-    importers: dict[str, set[str]] = {"service.storage.rows": tests, **{one: set() for one in tests}}
+def test_tests_of_the_own_room_come_first() -> None:
+    importers: dict[str, set[str]] = {
+        "service.storage.rows": {"tests.api.test_a", "service.storage"},
+        "service.storage": {"tests.service.storage.test_z"},
+        "tests.api.test_a": set(),
+        "tests.service.storage.test_z": set(),
+    }
     found = reached_tests(["service.storage.rows"], importers)
     assert [one.file for one in found] == ["tests/service/storage/test_z.py", "tests/api/test_a.py"]
 
@@ -114,7 +122,7 @@ def test_changes_are_those_since_the_branch_left_main(tmp_path: Path) -> None:
     [
         ("core/losses/cost.py", "tests/core/losses/"),
         ("service/storage/texts.py", "tests/service/storage/"),
-        ("service/web/templates/load/page.html", "tests/service/web/"),
+        ("service/web/templates/load/page.html", "tests/service/web/load/"),
         ("tests/docs/test_links.py", "tests/docs/test_links.py"),
     ],
 )
@@ -123,7 +131,6 @@ def test_a_file_of_this_tree_is_followed_by_tests_of_its_room(file: str, nearest
     found = [one for one in reached_by([file]) if "/quick/" not in one.file]  # which names the file, too
     assert module_of(found[0].file)
     assert found[0].file.startswith(nearest)
-    assert [one.distance for one in found] == sorted(one.distance for one in found)
 
 
 def test_no_test_begins_too_late_and_what_ran_is_noted(tmp_path: Path) -> None:
@@ -151,3 +158,15 @@ def test_no_test_begins_too_late_and_what_ran_is_noted(tmp_path: Path) -> None:
     seconds = json.loads(kept.read_text())
     assert seconds["test_b.py::test_long"] == 1000
     assert seconds["test_a.py::test_last"] < 0.1
+
+
+@pytest.mark.campaign
+def test_a_run_that_is_stopped_says_whether_a_test_failed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join((str(ROOT), os.environ.get("PYTHONPATH", ""))))
+    (tmp_path / ".quick").mkdir()
+    (tmp_path / "test_long.py").write_text(LONG)
+    now_s = time.time()
+    assert run_tests([Reached("test_long.py", 1)], tmp_path, end_s=now_s + 100, stop_s=now_s + 30) == 1
+    assert "stopped, no time" in capsys.readouterr().out
