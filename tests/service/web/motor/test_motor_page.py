@@ -202,7 +202,7 @@ def test_forms_are_there_for_those_who_may(shown: Shown) -> None:
         token = token_of(repository, role, name=role.value.lower())
         answer = client.get(HERE, headers={"Authorization": f"Bearer {token}"})
         seen[role] = forms(page(answer)) - {"withdrawal"} if answer.status_code == 200 else None
-    operator = {"recording-requests", "notes"}
+    operator = {"recording-requests", "notes", "planned-stop", "inspections"}
     assert seen == {
         Role.VIEWER: set(),
         Role.OPERATOR: operator,
@@ -283,7 +283,7 @@ def test_an_operator_writes_notes_that_change_nothing_else(
     client: httpx.Client, repository: Repository
 ) -> None:
     client.headers["Authorization"] = f"Bearer {token_of(repository, Role.OPERATOR, name='olga')}"
-    assert not page(client.get(HERE)).cssselect('select[name="kind"]')
+    assert not page(client.get(HERE)).cssselect('form[action$="/notes"] select[name="kind"]')
     assert client.post(f"{HERE}/notes", data={"text": "noisy"}).status_code == 303
     refused = client.post(f"{HERE}/notes", data={"text": "rewound", "kind": "rewound"})
     assert refused.status_code == 403
