@@ -2,6 +2,7 @@
 
 import ast
 import importlib
+import io
 import re
 import shlex
 from collections.abc import Iterator
@@ -10,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from service.cli.app import main
 from tests.docs.command_reference import commands
 from tests.docs.pages import ROOT, pages
 
@@ -82,3 +84,43 @@ def test_commands_and_their_options_are_there(page: str) -> None:
         }
         given = {word.partition("=")[0].strip("[]") for word in words if word.strip("[").startswith("--")}
         assert given <= known | {"--help"}, (name, given - known)
+
+
+SERVING = frozenset({"serve", "collect", "work", "demo"})
+"""Commands that run until they are ended; tests of their own start them, as they do `ied-sim`."""
+SYNOPSIS = re.compile(r"[\[<]|\.\.\.|\bNAME\b")
+
+
+def run_commands() -> Iterator[tuple[str, ...]]:
+    """Yield each command of the pages that ends by itself, once, without what a shell does afterwards."""
+    seen = set[tuple[str, ...]]()
+    for page in PAGES:
+        for words in told_commands(text_of(page)):
+            end = next(
+                (n for n, word in enumerate(words) if word in {"|", "||", ">", ">>", "&&", "&", ";"}), None
+            )
+            command = tuple(words[:end])
+            is_one = command[0] == "mcc" and command[1:2] and command[1] not in SERVING
+            if is_one and not SYNOPSIS.search(" ".join(command)) and command not in seen:
+                seen.add(command)
+                yield command
+
+
+@pytest.mark.parametrize("command", [*run_commands()], ids=" ".join)
+def test_each_command_runs_as_it_is_written(
+    command: tuple[str, ...],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """It does its work, or says in words what is missing here, as the service: it is never used wrongly."""
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.setenv("MCC_URL", "http://127.0.0.1:9")
+    monkeypatch.setattr("sys.stdin", io.StringIO())
+    code = main(command[1:])
+    said = capsys.readouterr()
+    assert code in (0, 1, 2)
+    assert not re.search(r"tells the way|defect|Traceback", said.err + said.out)
+    assert code == 0 or (said.err + said.out).strip()
