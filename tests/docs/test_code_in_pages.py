@@ -88,6 +88,7 @@ def test_commands_and_their_options_are_there(page: str) -> None:
 
 SERVING = frozenset({"serve", "collect", "work", "demo"})
 """Commands that run until they are ended; tests of their own start them, as they do `ied-sim`."""
+OF_SHELL = frozenset({"|", "||", ">", ">>", "&&", "&", ";"})
 SYNOPSIS = re.compile(r"[\[<]|\.\.\.|\bNAME\b")
 
 
