@@ -8,7 +8,7 @@ more.
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import astuple
+from dataclasses import astuple, replace
 from math import exp, isinf, log, sqrt
 from time import perf_counter
 
@@ -36,12 +36,15 @@ from core.commissioning.uncertainty import (
 from core.commissioning.unknowns import LOGARITHMS, OF_A_CHANGE, OF_A_START, USUAL_CHANGE, Point
 from core.machines.base import Array
 from core.machines.candidates import LoadLaw
+from core.machines.load_point import load_point
 from core.machines.motor_file.reader import Plate
 from core.machines.parameters import Motor, ParametersSource
 from core.recordings import Recording
 
 STARTING_POINTS = 6
 """Points of the global search from which the refinement begins."""
+RUNNING_STEPS = 4
+"""Steps of the fixed point of load and slip: each is a tenth as wrong as the one before."""
 LIGHT_LOAD = 0.05
 """Load level below which the load law makes no difference."""
 USUAL_RESIDUAL = 0.05
@@ -112,9 +115,15 @@ def commission(
     report(0.7, "choosing the law of the load")
     chosen = choose([thinned(one) for one in starts], prior, vector, load_law)
     report(0.8, "refining")
-    records, whole, spent = _refined(starts, prior, chosen)
-    fit, fixed = _fit_identifiable(records, whole)
-    if chosen.steadily is not None and not are_possible(records, fit):
+    try:
+        records, whole, spent = _refined(starts, prior, chosen)
+        fit, fixed = _fit_identifiable(records, whole)
+        is_possible = chosen.steadily is None or are_possible(records, fit)
+    except DivergenceError:
+        if chosen.steadily is None:
+            raise
+        is_possible, spent = False, 0
+    if chosen.steadily is not None and not is_possible:  # no change of the load explains the start
         chosen = chosen.steadily
         records, whole, more = _refined(starts, prior, chosen)
         fit, fixed = _fit_identifiable(records, whole)
@@ -283,7 +292,7 @@ def _result(
         motor=motor,
         parameters=estimates,
         change=_change(point, half, why),
-        starts=found,
+        starts=tuple(_while_running(one, motor, records.load_law) for one in found),
         load_law=records.load_law.name.lower(),
         condition_number=condition,
         reasons=tuple(
@@ -293,6 +302,30 @@ def _result(
         evaluations=evaluations,
         compute_seconds=seconds,
     )
+
+
+def _while_running(start: StartFound, motor: Motor, law: LoadLaw) -> StartFound:
+    """Return a start whose load is the torque with which the motor then runs, as a diagnosis tells it.
+
+    The fit takes the load at synchronous speed, from where a law of the speed leads to that of the slip.
+    """
+    plate, at_synchronous, share = motor.nameplate, start.load_level.value, 1.0
+    for _ in range(RUNNING_STEPS if law else 0):
+        crossing_W = at_synchronous * share * plate.rated_power_W
+        at = load_point(motor, plate.winding_voltage_V, plate.rated_frequency_Hz, crossing_W)
+        share = (1.0 - at.slip) ** law
+    change = start.load_change
+    return replace(
+        start,
+        load_level=_scaled(start.load_level, share),
+        load_change=None if change is None else replace(change, change=_scaled(change.change, share)),
+    )
+
+
+def _scaled(estimate: Estimate, share: float) -> Estimate:
+    ends = estimate.ci95
+    scaled = None if ends is None else (share * ends[0], share * ends[1])
+    return replace(estimate, value=share * estimate.value, ci95=scaled)
 
 
 def _change(point: Point, half: Array, why: dict[str, str]) -> dict[str, Estimate]:

@@ -61,7 +61,8 @@ class StartFound:
     compared_s : tuple of float
         Part of the record that was compared [s].
     load_level : Estimate
-        Load torque over rated torque; before it changed, where it did.
+        Load torque over rated torque, at the speed with which the motor then runs; before it changed, where
+        it did.
     time_offset_s : Estimate
         Delay of the currents against the voltages [s].
     residual_rms_A : float
