@@ -51,6 +51,18 @@ condition ([how](../../benchmarks/storage/record_path.py)), over {RECORDS} recor
 
 """
 
+CHANGES = """
+What a change took, in files of code that were touched or made, counted by hand in the commits; tests, the
+client and pages that are made do not count:
+
+| change | before | took | goal |
+| --- | --- | --- | --- |
+| another trended figure of a finding that is there | 34 to 36 | 3: declared, kept, computed | 4 |
+| the first figure of a new finding: the efficiency of a motor, with losses, words and page | | 17 | |
+| a new kind of alarm: `inefficient` | 28 | 7 | 4 |
+| a new finding over time: what losses cost | 43 | 14 | 12 |
+"""
+
 
 def figures() -> dict[str, int]:
     """Return each figure by its name."""
@@ -93,7 +105,7 @@ def main() -> None:
     """Count, and write the page."""
     rows = [(name, BEFORE[name], f"{figure:,}", GOALS.get(name, "")) for name, figure in figures().items()]
     lines = table(("figure", "before", "now", "goal"), rows)
-    PAGE.write_text(PREAMBLE + "\n".join(lines) + "\n", encoding="utf-8")
+    PAGE.write_text(PREAMBLE + "\n".join(lines) + "\n" + CHANGES, encoding="utf-8")
     print("\n".join(lines))
 
 
