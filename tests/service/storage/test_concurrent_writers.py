@@ -117,13 +117,12 @@ def test_a_renewal_goes_ahead_of_the_threads_that_wait(database_url: str, reposi
 
 @ON_SQLITE
 def test_who_finds_nothing_to_do_waits_for_no_writer(database_url: str, repository: Repository) -> None:
-    """Runner and gateways look all the time; nearly always there is neither a job nor a changed rotor."""
+    """Runner and gateways look all the time; nearly always there is no job and no request."""
     repository.sync_plant(two_motor_plant())
     register_runner(repository)
     with closing(sqlite3.connect(database_url.removeprefix("sqlite:///"), isolation_level=None)) as other:
         other.execute("BEGIN IMMEDIATE")
         begun_s = time.monotonic()
         assert repository.claim_job(now_ns=NOW_NS, runner=RUNNER) is None
-        repository.settle_motor_condition("PUMP-A1", now_ns=NOW_NS)
         assert repository.relays_with_requests() == ()
         assert time.monotonic() - begun_s < BUSY_TIMEOUT_S
