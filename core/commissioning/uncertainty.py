@@ -208,10 +208,9 @@ def misfit_covariance(records: Records, fit: Fit) -> Array:
         The covariance.
     """
     bread = information_inverse(fit)
-    free = int(fit.free.sum())
     filling = np.zeros_like(bread)
     for start, residual, whole in zip(records.starts, fit.residuals, fit.jacobians, strict=True):
-        jacobian = whole[fit.free].reshape(free, -1)
+        jacobian = whole[fit.free].reshape(len(bread), whole[0].size)  # none may be free
         filling += misfit(start, residual) * (jacobian @ jacobian.T)
     return bread @ filling @ bread
 
