@@ -67,6 +67,12 @@ class LossFigures:
         return {words: watts for words, watts in found.items() if watts is not None}
 
     @property
+    def of_supply_W(self) -> dict[str, float]:
+        """What the supply adds to the losses, by cause in words; faults of the motor have alarms."""
+        causes = ("unbalance of the supply", "voltage off its rated value")
+        return {words: watts for words, watts in self.extra_W.items() if words in causes}
+
+    @property
     def extra_W(self) -> dict[str, float]:
         """Those of them that do add losses."""
         return {words: watts for words, watts in self.by_cause_W.items() if watts > 0.0}

@@ -104,9 +104,9 @@ CATALOGUE: Final[Mapping[AlarmKind, AlarmDescription]] = {
     ),
     AlarmKind.INEFFICIENT: AlarmDescription(
         AlarmPriority.LOW,
-        "Most of the motor's latest records have less than 40 % of its rated load, or faults and supply add "
-        "a tenth or more to its losses in two of the latest three.",
-        "Energy is paid for that does no work; what adds losses by a fault also heats the winding.",
+        "Most of the motor's latest records have less than 40 % of its rated load, or its supply adds a "
+        "tenth or more to its losses in two of the latest three.",
+        "Energy is paid for that does no work; what adds losses also heats the winding.",
         EFFICIENCY_ADVICE,
         "the latest records do not show it any more, or the motor leaves the plant",
     ),

@@ -31,9 +31,7 @@ def test_two_of_three_records_tell_that_it_loses_too_much(
     assert part.state is state
     if state is State.WATCH:
         assert part.finding == "more losses than it should have"
-        assert part.reasons[0] == (
-            "20% more losses than a sound motor would have: unbalance of the supply 150 W"
-        )
+        assert part.reasons[0] == ("20% more losses than at a good supply: unbalance of the supply 150 W")
 
 
 @pytest.mark.parametrize(
