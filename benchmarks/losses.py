@@ -16,8 +16,9 @@ import numpy as np
 from benchmarks.reporting import rate_text, table
 from core.diagnosis.verdict import Indicators
 from core.losses.measuring import measure_losses
+from core.losses.other_losses import copper_W
 from core.machines.load_point import load_point
-from core.machines.parameters import MachineParameters, Motor, ParametersSource, ParameterTolerances
+from core.machines.parameters import Motor, ParametersSource, ParameterTolerances
 from core.rotor.finding import RotorFinding
 from core.speed.finding import SpeedFinding, SpeedSource, SpeedState
 from core.supply.figures import SupplyFigures
@@ -110,12 +111,12 @@ def _outcome(
     rated = load_point(truth, volts, hertz, plate.rated_power_W)
     core, friction, stray = (random.uniform(*one) for one in (CORE, FRICTION, STRAY))
     of_windings = 1.0 - core - friction - stray
-    rated_W = _copper_W(hot, rated.current_A, rated.rotor_current_A) / of_windings
+    rated_W = copper_W(truth, rated) / of_windings
     at = load_point(truth, volts, hertz, load * plate.rated_power_W)
     idle_A = abs(load_point(truth, volts, hertz, 0.0).current_A)
     grown = (abs(at.current_A) ** 2 - idle_A**2) / (abs(rated.current_A) ** 2 - idle_A**2)
     iron_W = core * rated_W
-    lost_W = _copper_W(hot, at.current_A, at.rotor_current_A) + iron_W
+    lost_W = copper_W(truth, at) + iron_W
     lost_W += friction * rated_W + stray * rated_W * grown
     drawn_W = 3.0 * volts * at.current_A.real + iron_W
     current_A = abs(at.current_A + iron_W / (3.0 * volts))
@@ -129,12 +130,6 @@ def _outcome(
     efficiency = 1.0 - lost_W / drawn_W
     low, high = told.efficiency_ci95 or (0.0, 1.0)
     return Outcome(load, kind, efficiency, told.efficiency, low <= efficiency <= high, high - low)
-
-
-def _copper_W(machine: MachineParameters, current: complex, rotor: complex) -> float:
-    return 3.0 * (
-        machine.stator_resistance_ohm * abs(current) ** 2 + machine.rotor_resistance_ohm * abs(rotor) ** 2
-    )
 
 
 def _file(random: np.random.Generator, motor: Motor, tolerance: float) -> Motor:

@@ -250,21 +250,6 @@ Cause: TypeAlias = Literal[
 ]
 
 
-class CauseCost(TypedDict):
-    """
-    What one cause adds to the losses, the median of the latest records; below zero where it saves some.
-
-    growth_W_per_year: null of too few records (..._ci95: 95 % interval, by the scatter of the records).
-    """
-
-    cause: str
-    loss_W: float
-    energy_kWh_per_year: float
-    cost_per_year: float | None
-    growth_W_per_year: float | None
-    growth_W_per_year_ci95: tuple[float, float] | None
-
-
 ChangeState: TypeAlias = Literal["as-before", "changed", "not-told-apart", "unknown"]
 
 
@@ -639,9 +624,18 @@ class LoadClass(TypedDict):
 
 class LoadEfficiency(TypedDict):
     """
-    The efficiency at one load: of so many records, the median of each figure.
+    The efficiency at one load.
 
-    load_class: tenth of the rated power at the shaft, 0 to 11.
+    Parameters
+    ----------
+    load_class : int
+        Tenth of the rated power at the shaft.
+    records : int
+        Records that tell it.
+    efficiency : float
+        Median of theirs.
+    efficiency_ci95 : tuple of float
+        Medians of the ends of their 95 % intervals: what is not known of a motor is so in each record.
     """
 
     load_class: int
@@ -688,6 +682,11 @@ class LoginWays(TypedDict):
     password: bool
     oidc: str | None
     notice: str | None
+
+
+LossCause: TypeAlias = Literal[
+    "shorted turns", "unbalance of the supply", "voltage off its rated value", "faulty cage"
+]
 
 
 class LossFigures(TypedDict):
@@ -740,24 +739,6 @@ class LossFigures(TypedDict):
     voltage_loss_W: float | None
     rotor_loss_W: float | None
     reasons: list[str]
-
-
-class Losses(TypedDict):
-    """
-    What a motor loses, and what of it faults and supply cost a year.
-
-    records: the latest ones that tell it. losses_W: median of the latest. duty: running over known hours of
-    the last 30 days; null where none is metered, and the motor is then taken to run all the time.
-    currency: of `[energy]`, empty without one.
-    """
-
-    records: int
-    losses_W: float | None
-    duty: float | None
-    running_hours_per_year: float
-    currency: str
-    efficiencies: list[LoadEfficiency]
-    causes: list[CauseCost]
 
 
 MeasurementSource: TypeAlias = Literal["load-profile", "polled"]
@@ -2090,6 +2071,34 @@ class Backup(TypedDict):
     problem: str | None
 
 
+class CauseCost(TypedDict):
+    """
+    What one cause costs.
+
+    Parameters
+    ----------
+    cause : LossCause
+        The cause.
+    loss_W : float
+        Median of the latest records [W].
+    energy_kWh_per_year : float
+        Energy in a year of as many hours as the motor runs now [kWh].
+    cost_per_year : float or None
+        The same in money; None without a price.
+    growth_W_per_year : float or None
+        By how much the loss grows in a year [W]; None of too few records.
+    growth_W_per_year_ci95 : tuple of float or None
+        Its 95 % interval, from the scatter of the records [W].
+    """
+
+    cause: LossCause
+    loss_W: float
+    energy_kWh_per_year: float
+    cost_per_year: float | None
+    growth_W_per_year: float | None
+    growth_W_per_year_ci95: tuple[float, float] | None
+
+
 class Classification(TypedDict):
     """
     The one answer of a record or of a motor.
@@ -2373,6 +2382,24 @@ class LoadProfile(TypedDict):
     record_limits: NotRequired[list[RecordLimit]]
     thermal: NotRequired[ThermalState | None]
     relay_statistics: NotRequired[RelayStatistics | None]
+
+
+class Losses(TypedDict):
+    """
+    What a motor loses, and what of it faults and supply cost a year.
+
+    records: the latest ones that tell it. losses_W: median of the latest. duty: running over known hours of
+    the last 30 days; null where none is metered, and the motor is then taken to run all the time.
+    currency: of `[energy]`, empty without one.
+    """
+
+    records: int
+    losses_W: float | None
+    duty: float | None
+    running_hours_per_year: float
+    currency: str
+    efficiencies: list[LoadEfficiency]
+    causes: list[CauseCost]
 
 
 class Measurement(TypedDict):

@@ -8,6 +8,7 @@ The sums over cycles of core.diagnosis.refinement are no alternative, because a 
 nearly all its information.
 """
 
+from collections.abc import Sequence
 from math import sqrt
 
 import numpy as np
@@ -180,13 +181,13 @@ def coherent_covariance(records: Records, fit: Fit) -> Array:
     ndarray, shape (free, free)
         The covariance.
     """
-    bread = information_inverse(fit)
-    filling = np.zeros_like(bread)
-    for start, whole in zip(records.starts, fit.jacobians, strict=True):
-        jacobian = whole[fit.free].reshape(len(bread), whole[0].size)
-        error = COHERENT_ERROR**2 * float(np.mean(start.measured_ab**2))
-        filling += error * start.sample_rate_hz * start.cycle_s * (jacobian @ jacobian.T)
-    return bread @ filling @ bread
+    return _covariance(
+        fit,
+        [
+            COHERENT_ERROR**2 * float(np.mean(start.measured_ab**2)) * start.sample_rate_hz * start.cycle_s
+            for start in records.starts
+        ],
+    )
 
 
 def misfit_covariance(records: Records, fit: Fit) -> Array:
@@ -207,11 +208,17 @@ def misfit_covariance(records: Records, fit: Fit) -> Array:
     ndarray, shape (free, free)
         The covariance.
     """
+    pairs = zip(records.starts, fit.residuals, strict=True)
+    return _covariance(fit, [misfit(start, residual) for start, residual in pairs])
+
+
+def _covariance(fit: Fit, variances: Sequence[float]) -> Array:
+    """Return the covariance of the free entries by errors of the currents, each start's with its variance."""
     bread = information_inverse(fit)
     filling = np.zeros_like(bread)
-    for start, residual, whole in zip(records.starts, fit.residuals, fit.jacobians, strict=True):
+    for variance, whole in zip(variances, fit.jacobians, strict=True):
         jacobian = whole[fit.free].reshape(len(bread), whole[0].size)  # none may be free
-        filling += misfit(start, residual) * (jacobian @ jacobian.T)
+        filling += variance * (jacobian @ jacobian.T)
     return bread @ filling @ bread
 
 

@@ -186,26 +186,7 @@ def losses_of(
     rotor: RotorFinding,
     speed: SpeedFinding,
 ) -> LossFigures:
-    """Tell the losses of the motor; where they cannot be computed, a reason says so.
-
-    Parameters
-    ----------
-    motor : Motor
-        The motor.
-    diagnosis : Diagnosis
-        What the record shows of the stator.
-    supply : SupplyFigures or None
-        What it shows of the supply.
-    rotor : RotorFinding
-        What it shows of the cage.
-    speed : SpeedFinding
-        Its speed.
-
-    Returns
-    -------
-    LossFigures
-        The losses.
-    """
+    """Tell the losses of the motor; where they cannot be computed, a reason says so."""
     try:
         figures = measure_losses(motor, diagnosis, supply, rotor, speed)
     except _NOT_COMPUTABLE as error:

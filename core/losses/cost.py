@@ -6,7 +6,7 @@ from math import sqrt
 from statistics import linear_regression, median
 from typing import Final
 
-from core.losses.figures import LossFigures
+from core.losses.figures import LossCause, LossFigures
 from core.normal_distribution import NORMAL_95
 from core.units import NANOSECONDS_PER_DAY
 
@@ -63,8 +63,8 @@ class CauseCost:
 
     Parameters
     ----------
-    cause : str
-        The cause in words.
+    cause : LossCause
+        The cause.
     loss_W : float
         Median of the latest records [W].
     energy_kWh_per_year : float
@@ -77,7 +77,7 @@ class CauseCost:
         Its 95 % interval, from the scatter of the records [W].
     """
 
-    cause: str
+    cause: LossCause
     loss_W: float
     energy_kWh_per_year: float
     cost_per_year: float | None
@@ -129,7 +129,7 @@ def loss_cost(
     LossCost
         Efficiencies, causes and costs.
     """
-    by_cause: dict[str, list[float]] = {}
+    by_cause: dict[LossCause, list[float]] = {}
     for one in course:
         for cause, watts in one.figures.by_cause_W.items():
             by_cause.setdefault(cause, []).append(watts)
@@ -151,7 +151,7 @@ def loss_cost(
 
 
 def _cost(
-    cause: str, times_ns: Sequence[int], watts: Sequence[float], hours: float, price: float | None
+    cause: LossCause, times_ns: Sequence[int], watts: Sequence[float], hours: float, price: float | None
 ) -> CauseCost:
     loss_W = median(watts[-LATEST:])
     energy_kWh = loss_W * hours / WATTS_PER_KILOWATT

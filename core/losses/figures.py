@@ -1,11 +1,27 @@
 """What a record tells of a motor's losses."""
 
-from dataclasses import dataclass, fields
-from typing import Any, Self
+from dataclasses import dataclass
+from enum import StrEnum
+
+from core.reasoned_figures import ReasonedFigures
+
+
+class LossCause(StrEnum):
+    """What adds to the losses of a motor, in words."""
+
+    TURNS = "shorted turns"
+    UNBALANCE = "unbalance of the supply"
+    VOLTAGE = "voltage off its rated value"
+    CAGE = "faulty cage"
+
+    @property
+    def is_of_supply(self) -> bool:
+        """Whether it is none of the motor, whose own faults have alarms of their own."""
+        return self in (LossCause.UNBALANCE, LossCause.VOLTAGE)
 
 
 @dataclass(frozen=True, slots=True)
-class LossFigures:
+class LossFigures(ReasonedFigures):
     """Losses of a motor in one record; figures are None where it cannot tell them.
 
     Parameters
@@ -53,54 +69,19 @@ class LossFigures:
     unbalance_loss_W: float | None
     voltage_loss_W: float | None
     rotor_loss_W: float | None
-    reasons: tuple[str, ...]
 
     @property
-    def by_cause_W(self) -> dict[str, float]:
-        """What faults and supply add to the losses, by cause in words; none where the losses are not told."""
+    def by_cause_W(self) -> dict[LossCause, float]:
+        """What faults and supply add to the losses, by cause; none where the losses are not told."""
         found = {
-            "shorted turns": self.turns_loss_W,
-            "unbalance of the supply": self.unbalance_loss_W,
-            "voltage off its rated value": self.voltage_loss_W,
-            "faulty cage": self.rotor_loss_W,
+            LossCause.TURNS: self.turns_loss_W,
+            LossCause.UNBALANCE: self.unbalance_loss_W,
+            LossCause.VOLTAGE: self.voltage_loss_W,
+            LossCause.CAGE: self.rotor_loss_W,
         }
-        return {words: watts for words, watts in found.items() if watts is not None}
+        return {cause: watts for cause, watts in found.items() if watts is not None}
 
     @property
-    def of_supply_W(self) -> dict[str, float]:
-        """What the supply adds to the losses, by cause in words; faults of the motor have alarms."""
-        causes = ("unbalance of the supply", "voltage off its rated value")
-        return {words: watts for words, watts in self.extra_W.items() if words in causes}
-
-    @property
-    def extra_W(self) -> dict[str, float]:
+    def extra_W(self) -> dict[LossCause, float]:
         """Those of them that do add losses."""
-        return {words: watts for words, watts in self.by_cause_W.items() if watts > 0.0}
-
-    @classmethod
-    def untold(cls, reason: str) -> Self:
-        """Return the figures of a record that tells nothing.
-
-        Parameters
-        ----------
-        reason : str
-            Why, in words.
-
-        Returns
-        -------
-        LossFigures
-            Without figures.
-        """
-        untold: dict[str, Any] = {one.name: None for one in fields(cls)}
-        return cls(**untold | {"reasons": (reason,)})
-
-    def as_dict(self) -> dict[str, object]:
-        """Return the part `losses` of the document that `mcc diagnose --json` prints.
-
-        Returns
-        -------
-        dict of str to object
-            The figures by name; tuples are lists.
-        """
-        values = {one.name: getattr(self, one.name) for one in fields(self)}
-        return {name: list(value) if isinstance(value, tuple) else value for name, value in values.items()}
+        return {cause: watts for cause, watts in self.by_cause_W.items() if watts > 0.0}

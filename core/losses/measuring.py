@@ -11,6 +11,7 @@ from math import exp, hypot, log, sqrt
 from core.condition.measuring.turns_grid import HALF_WARM
 from core.diagnosis.verdict import Diagnosis
 from core.losses.extra import (
+    backward_rotor_ohm,
     losses_of_cage,
     losses_of_turns,
     losses_of_unbalance,
@@ -56,11 +57,9 @@ class _Measured:
 
     def segregated(self, motor: Motor, other: OtherLosses) -> _Segregated:
         """Return the losses: of the forward field, and what the backward one adds to the rotor's."""
-        machine = motor.parameters
-        stator_W = 3.0 * HALF_WARM * machine.stator_resistance_ohm * self.current_A**2 + self.turns_W
+        stator_W = 3.0 * motor.parameters.stator_resistance_ohm * self.current_A**2 + self.turns_W
         iron_W = other.iron_W * self.voltage**2
-        backward_ohm = HALF_WARM * motor.backward_rotor.resistance_ratio * machine.rotor_resistance_ohm
-        backward_W = 3.0 * backward_ohm * self.backward_current_A**2
+        backward_W = 3.0 * backward_rotor_ohm(motor) * self.backward_current_A**2
         crossing_W = self.power_W - stator_W - iron_W - backward_W / (2.0 - self.slip)
         return _Segregated(
             stator_copper_W=stator_W,
@@ -106,6 +105,7 @@ def measure_losses(
         return LossFigures.untold("the record shows no slip of a motor that runs steadily")
     if supply.active_power_W <= 0.0 or speed.slip <= 0.0:
         return LossFigures.untold("the motor feeds power back")
+    motor = _at_work(motor)
     in_winding = 1.0 / sqrt(3.0) if motor.nameplate.connection is Connection.DELTA else 1.0
     seen = speed.seen_slip is not None
     slip = speed.slip * (1.0 if seen else HALF_WARM)
@@ -142,8 +142,8 @@ def measure_losses(
         friction_W=parts.friction_W,
         stray_W=parts.stray_W,
         turns_loss_W=sum(turns),
-        unbalance_loss_W=losses_of_unbalance(motor, supply),
-        voltage_loss_W=losses_of_voltage(motor, supply),
+        unbalance_loss_W=losses_of_unbalance(motor, supply, slip),
+        voltage_loss_W=losses_of_voltage(motor, supply, measured.power_W),
         rotor_loss_W=losses_of_cage(rotor, parts.rotor_copper_W),
         reasons=reasons,
     )
@@ -170,10 +170,19 @@ def _deviation(
     return hypot(*(log(one / middle_W) for one in changed_W))
 
 
+def _at_work(motor: Motor) -> Motor:
+    """Return a motor whose resistances are half way between cold, as its file may have them, and hot."""
+    return _warmed(_warmed(motor, "stator_resistance_ohm", HALF_WARM), "rotor_resistance_ohm", HALF_WARM)
+
+
 def _with_resistance(motor: Motor, name: str) -> Motor:
     """Return the motor with a resistance that is larger by its standard deviation: tolerance and warmth."""
     deviation = hypot(getattr(motor.tolerances, name) / sqrt(3.0), WARMTH_DEVIATION)
-    value = getattr(motor.parameters, name) * exp(deviation)
+    return _warmed(motor, name, exp(deviation))
+
+
+def _warmed(motor: Motor, name: str, factor: float) -> Motor:
+    value = factor * getattr(motor.parameters, name)
     return replace(motor, parameters=replace(motor.parameters, **{name: value}))
 
 

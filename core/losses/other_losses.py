@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from math import exp, log10
 
-from core.machines.load_point import load_point
+from core.machines.load_point import LoadPoint, load_point
 from core.machines.parameters import Motor
 
 OTHER_SHARE = 0.45
@@ -43,6 +43,15 @@ class OtherLosses:
         """Return the stray load losses at a current of the windings, after IEC 60034-2-1 [W]."""
         load = current_A**2 - self.no_load_current_A**2
         return self.stray_W * max(0.0, load / (self.rated_current_A**2 - self.no_load_current_A**2))
+
+
+def copper_W(motor: Motor, at: LoadPoint) -> float:
+    """Return the losses of the windings and of the rotor of a sound motor at a load [W]."""
+    machine = motor.parameters
+    return 3.0 * (
+        machine.stator_resistance_ohm * abs(at.current_A) ** 2
+        + machine.rotor_resistance_ohm * abs(at.rotor_current_A) ** 2
+    )
 
 
 def assigned_stray_W(rated_power_W: float, rated_input_W: float) -> float:
@@ -80,15 +89,12 @@ def other_losses(motor: Motor, deviations: float = 0.0) -> OtherLosses:
     OtherLosses
         The losses.
     """
-    plate, machine = motor.nameplate, motor.parameters
+    plate = motor.nameplate
     voltage_V, hertz, power_W = plate.winding_voltage_V, plate.rated_frequency_Hz, plate.rated_power_W
     rated, idle = (load_point(motor, voltage_V, hertz, load_W) for load_W in (power_W, 0.0))
-    copper_W = 3.0 * (
-        machine.stator_resistance_ohm * abs(rated.current_A) ** 2
-        + machine.rotor_resistance_ohm * abs(rated.rotor_current_A) ** 2
-    )
-    other_W = copper_W * OTHER_SHARE / (1.0 - OTHER_SHARE) * exp(deviations * OTHER_DEVIATION)
-    stray_W = min(assigned_stray_W(power_W, power_W + copper_W + other_W), MOST_STRAY * other_W)
+    rated_copper_W = copper_W(motor, rated)
+    other_W = rated_copper_W * OTHER_SHARE / (1.0 - OTHER_SHARE) * exp(deviations * OTHER_DEVIATION)
+    stray_W = min(assigned_stray_W(power_W, power_W + rated_copper_W + other_W), MOST_STRAY * other_W)
     steady_W = other_W - stray_W
     return OtherLosses(
         iron_W=SHARE_OF_CORE * steady_W,

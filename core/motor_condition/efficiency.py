@@ -66,11 +66,15 @@ def efficiency_part(latest: Sequence[LossFigures], load_levels: Sequence[float])
 
 def _extra_share(figures: LossFigures) -> float:
     """Return the losses by the supply over those that the motor would have without any cause."""
-    extra_W = sum(figures.of_supply_W.values())
+    extra_W = sum(watts for cause, watts in figures.extra_W.items() if cause.is_of_supply)
     sound_W = (figures.losses_W or 0.0) - sum(figures.extra_W.values())
     return extra_W / max(sound_W, 1.0)
 
 
 def _extra_words(figures: LossFigures) -> str:
-    named = (f"{words} {watts:.3g} W" for words, watts in figures.of_supply_W.items() if watts >= 1.0)
+    named = (
+        f"{cause} {watts:.3g} W"
+        for cause, watts in figures.extra_W.items()
+        if cause.is_of_supply and watts >= 1.0
+    )
     return f"{_extra_share(figures):.0%} more losses than at a good supply: {', '.join(named)}"

@@ -9,7 +9,7 @@ from core.machines.parameters import Motor
 from core.machines.wound_rotor import resistance_at_rings_ohm, resistance_ratios
 from core.rotor.asymmetry import FEWEST_TURNS_OF_ANY, measure_asymmetry
 from core.rotor.baseband import Baseband
-from core.rotor.finding import RotorFinding, RotorState, decibels, load_bin
+from core.rotor.finding import RotorFinding, decibels, load_bin
 from core.rotor.judgement import judge
 from core.rotor.running_point import running_point, slip_course, without_delay
 from core.rotor.seen_slip import PLACED, at_seen_slip
@@ -144,17 +144,9 @@ def _remarks(baseband: Baseband) -> list[str]:
 def _unsupported(
     duration_s: float, reason: str, *, slip: float | None = None, load_level: float | None = None
 ) -> RotorFinding:
-    return RotorFinding(
-        state=RotorState.UNSUPPORTED,
-        lower_sideband_dB=None,
-        upper_sideband_dB=None,
-        severity_dB=None,
-        severity_dB_ci95=None,
-        detection_limit_dB=None,
+    return replace(
+        RotorFinding.untold(reason, duration_s),
         slip=slip,
         load_level=load_level,
         load_bin=None if load_level is None else load_bin(load_level),
-        duration_s=duration_s,
-        load_oscillation_dB=None,
-        reasons=(reason,),
     )

@@ -1,7 +1,8 @@
 """What a record tells of the air gap, and of a load that swings; what finds it is beside this module."""
 
-from dataclasses import dataclass, field, fields
-from typing import Any, Self
+from dataclasses import dataclass
+
+from core.reasoned_figures import ReasonedFigures
 
 EVEN_GAP = 0.004
 """Ripple of the permeance of a sound motor, a tenth of static times a twentieth of dynamic eccentricity."""
@@ -12,49 +13,7 @@ NOISE_RMS = 4.0
 
 
 @dataclass(frozen=True, slots=True)
-class SwingFinding:
-    """What findings of swings have in common.
-
-    Parameters
-    ----------
-    reasons : tuple of str
-        What limits the figures, in words.
-    """
-
-    reasons: tuple[str, ...] = field(kw_only=True)
-
-    @classmethod
-    def untold(cls, reason: str) -> Self:
-        """Return the finding of a record that tells nothing.
-
-        Parameters
-        ----------
-        reason : str
-            Why, in words.
-
-        Returns
-        -------
-        SwingFinding
-            The finding, without figures.
-        """
-        untold: dict[str, Any] = {one.name: None for one in fields(cls)}
-        return cls(**untold | {"reasons": (reason,)})
-
-    def as_dict(self) -> dict[str, object]:
-        """Return the part of the document that `mcc diagnose --json` prints.
-
-        Returns
-        -------
-        dict of str to object
-            The figures by name, and the reasons after them.
-        """
-        figures = {one.name: getattr(self, one.name) for one in fields(self)}
-        del figures["reasons"]
-        return figures | {"reasons": list(self.reasons)}
-
-
-@dataclass(frozen=True, slots=True)
-class EccentricityFinding(SwingFinding):
+class EccentricityFinding(ReasonedFigures):
     """What a record tells of the air gap; figures are None where it cannot tell them.
 
     Parameters
@@ -88,7 +47,7 @@ class EccentricityFinding(SwingFinding):
 
 
 @dataclass(frozen=True, slots=True)
-class PulsationFinding(SwingFinding):
+class PulsationFinding(ReasonedFigures):
     """The strongest swing of the load's torque; figures are None where a record cannot tell them.
 
     Parameters

@@ -1,10 +1,12 @@
 """What a recording shows of a motor's supply, as figures."""
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
+
+from core.reasoned_figures import ReasonedFigures
 
 
 @dataclass(frozen=True, slots=True)
-class SupplyFigures:
+class SupplyFigures(ReasonedFigures):
     """Figures of the supply and of what the motor draws from it, over one recording.
 
     Harmonics are those of the line voltage, and of the line current, that is distorted most. They have as
@@ -66,16 +68,3 @@ class SupplyFigures:
     active_power_W: float | None
     power_factor: float | None
     duration_s: float
-    reasons: tuple[str, ...]
-
-    def as_dict(self) -> dict[str, object]:
-        """Return the figures as JSON takes them.
-
-        Returns
-        -------
-        dict of str to object
-            The figures by name; tuples are lists.
-        """
-        return {
-            name: list(value) if isinstance(value, tuple) else value for name, value in asdict(self).items()
-        }

@@ -24,6 +24,9 @@ COMPRESSED: Final = ("text/", "application/json", "image/svg+xml")
 TYPES: Final = {".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml"}
 """As the Web knows them, whatever the machine's own table of types says."""
 
+ENCODINGS = "Accept-Encoding"
+"""What answers differ by."""
+
 
 @dataclass(frozen=True, slots=True)
 class StaticFile:
@@ -32,6 +35,14 @@ class StaticFile:
     media_type: str
     plain: bytes
     compressed: bytes | None
+
+    def answer(self, asked: Headers, about: Mapping[str, str]) -> Response:
+        """Return the answer to a request with these headers, compressed where it takes that."""
+        about = {**about, "Vary": ENCODINGS}
+        if self.compressed is not None and "gzip" in asked.get("accept-encoding", ""):
+            about = {**about, "Content-Encoding": "gzip"}
+            return Response(self.compressed, headers=about, media_type=self.media_type)
+        return Response(self.plain, headers=about, media_type=self.media_type)
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,9 +109,4 @@ class StaticFiles:
         file = self._tree.files.get(way) if digest == self._tree.digest else None
         if file is None:
             return PlainTextResponse("no such file: load the page again", 404)
-        about = {"Cache-Control": FOR_EVER, "Vary": "Accept-Encoding"}
-        if file.compressed is not None and "gzip" in headers.get("accept-encoding", ""):
-            body, about["Content-Encoding"] = file.compressed, "gzip"
-        else:
-            body = file.plain
-        return Response(body, headers=about, media_type=file.media_type)
+        return file.answer(headers, {"Cache-Control": FOR_EVER})

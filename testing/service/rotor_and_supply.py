@@ -41,19 +41,11 @@ BROKEN_ROTOR = replace(
     reasons=("the rotor's resistance is asymmetric",),
 )
 
-SHORT_RECORD = RotorFinding(
-    state=RotorState.UNSUPPORTED,
-    lower_sideband_dB=None,
-    upper_sideband_dB=None,
-    severity_dB=None,
-    severity_dB_ci95=None,
-    detection_limit_dB=None,
+SHORT_RECORD = replace(
+    RotorFinding.untold("the record is too short for this slip", 1.0),
     slip=0.008,
     load_level=0.2,
     load_bin=1,
-    duration_s=1.0,
-    load_oscillation_dB=None,
-    reasons=("the record is too short for this slip",),
 )
 
 ECCENTRIC_ROTOR = EccentricityFinding(

@@ -1,35 +1,8 @@
-"""Documents of a motor's losses and of what they cost. Fields that are null are not known (yet)."""
+"""The document of a motor's losses and of what they cost. Fields that are null are not known (yet)."""
 
+from core.losses.cost import CauseCost, LoadEfficiency
 from service.api.document import Document, Listed
 from service.condition.fault_costs import FaultCosts
-
-Interval = tuple[float, float]
-
-
-class LoadEfficiency(Document):
-    """The efficiency at one load: of so many records, the median of each figure.
-
-    load_class: tenth of the rated power at the shaft, 0 to 11.
-    """
-
-    load_class: int
-    records: int
-    efficiency: float
-    efficiency_ci95: Interval
-
-
-class CauseCost(Document):
-    """What one cause adds to the losses, the median of the latest records; below zero where it saves some.
-
-    growth_W_per_year: null of too few records (..._ci95: 95 % interval, by the scatter of the records).
-    """
-
-    cause: str
-    loss_W: float
-    energy_kWh_per_year: float
-    cost_per_year: float | None
-    growth_W_per_year: float | None
-    growth_W_per_year_ci95: Interval | None
 
 
 class Losses(Document):
@@ -58,6 +31,6 @@ def losses_document(costs: FaultCosts) -> Losses:
         duty=costs.duty,
         running_hours_per_year=found.running_hours_per_year,
         currency=costs.currency,
-        efficiencies=[LoadEfficiency.model_validate(one) for one in found.efficiencies],
-        causes=[CauseCost.model_validate(one) for one in found.causes],
+        efficiencies=list(found.efficiencies),
+        causes=list(found.causes),
     )

@@ -16,7 +16,7 @@ from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from service.api.problems import problem_response
-from service.web.static_files import StaticFile, entries, read
+from service.web.static_files import ENCODINGS, StaticFile, entries, read
 
 PREFIX: Final = "/help"
 FIRST: Final = "index.html"
@@ -72,11 +72,7 @@ class HelpPages:
         file = self._files.get(path.removeprefix(f"{PREFIX}/") or FIRST)
         if file is None:
             return problem_response(path, HTTPStatus.NOT_FOUND, f"nothing is at {path}")
-        about = {"Cache-Control": "public, no-cache", "ETag": file.tag, "Vary": "Accept-Encoding"}
+        about = {"Cache-Control": "public, no-cache", "ETag": file.tag}
         if file.tag in [tag.strip() for tag in headers.get("if-none-match", "").split(",")]:
-            return Response(status_code=HTTPStatus.NOT_MODIFIED, headers=about)
-        content = file.content
-        if content.compressed is not None and "gzip" in headers.get("accept-encoding", ""):
-            about["Content-Encoding"] = "gzip"
-            return Response(content.compressed, headers=about, media_type=content.media_type)
-        return Response(content.plain, headers=about, media_type=content.media_type)
+            return Response(status_code=HTTPStatus.NOT_MODIFIED, headers={**about, "Vary": ENCODINGS})
+        return file.content.answer(headers, about)
