@@ -43,8 +43,9 @@ class ConditionLog:
         for motor in motors:
             condition = conditions[motor.name]
             said = state_text(condition)
-            if self._said.get(motor.name) == said.plain:
-                continue
+            is_new = motor.name not in self._said
+            if self._said.get(motor.name) == said.plain or (is_new and condition["state"] == "unknown"):
+                continue  # of a motor whose first record is not judged yet nothing is said
             self._said[motor.name] = said.plain
             line = Text(f"day {day:4.1f}  {motor.name:<15}")
             line.append_text(said)
