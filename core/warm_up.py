@@ -1,6 +1,7 @@
 """Compile the numbers' inner loops once, so that nothing waits for them: python -m core.warm_up."""
 
 from dataclasses import fields
+from functools import cache
 
 import numpy as np
 
@@ -25,8 +26,9 @@ FOLLOWED = 40
 """Records that are followed."""
 
 
+@cache
 def warm_up() -> None:
-    """Run a few cycles, and a few records, of the thesis's motor through every compiled function."""
+    """Run a few cycles, and a few records, of the thesis's motor through every compiled function, once."""
     motor = Motor(
         "warm-up",
         Nameplate(rated_power_W=800.0, rated_voltage_V=380.0, rated_frequency_Hz=50.0, pole_pairs=2),

@@ -18,7 +18,7 @@ from pathlib import Path
 
 from benchmarks.simulator.plant import cpu_s
 from service.client.rest_client import ServiceClient
-from testing.service.processes import Service, descendants, running_service, simulated_plant
+from testing.service.processes import FORKED, Service, descendants, running_service, simulated_plant
 from testing.waiting import eventually
 
 RELAY, MOTOR = "A1_SEL710", "PUMP-A1"
@@ -29,7 +29,7 @@ WARM_UP = 8
 """Records before the first that counts: compilers, connections and caches are ready then."""
 
 LONGEST_S = 300.0
-KINDS = {"service.collector": "collector", "spawn_main": "workers", "service.cli": "service"}
+KINDS = {"service.collector": "collector", FORKED.decode(): "workers", "service.cli": "service"}
 
 
 def measure(records: int, period_s: float) -> Iterator[str]:

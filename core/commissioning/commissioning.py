@@ -29,6 +29,7 @@ from core.commissioning.unknowns import OF_A_CHANGE, USUAL_CHANGE, Point
 from core.machines.base import Array
 from core.machines.candidates import LoadLaw
 from core.machines.motor_file.reader import Plate
+from core.numerical_threads import on_one_thread
 from core.recordings import Recording
 
 STARTING_POINTS = 6
@@ -37,6 +38,7 @@ STARTING_POINTS = 6
 Progress = Callable[[float, str], None]
 
 
+@on_one_thread
 def commission(
     recordings: Sequence[Recording],
     plate: Plate,

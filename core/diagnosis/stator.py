@@ -41,6 +41,7 @@ from core.machines.parameters import Motor
 from core.machines.playback import Playback, electrical_to_rpm
 from core.machines.stator_models import MODELS
 from core.machines.wound_rotor import resistance_ratios
+from core.numerical_threads import on_one_thread
 from core.quality.assumed_supply import SUPPLY_UNBALANCE
 from core.quality.finding import QualityFinding, all_passed
 from core.quality.scale import current_scale_advice
@@ -52,6 +53,7 @@ SPEED_UNKNOWN: Final = (
 )
 
 
+@on_one_thread
 def diagnose(
     recording: Recording,
     motor: Motor,

@@ -17,10 +17,12 @@ from core.findings.beside_stator import (
 )
 from core.findings.findings import Findings
 from core.machines.parameters import Motor
+from core.numerical_threads import on_one_thread
 from core.recordings import Recording
 from core.speed.memory import LineMemory
 
 
+@on_one_thread
 def examine(
     recording: Recording,
     motor: Motor,

@@ -84,7 +84,7 @@ class JobRunner:
         self._id = str(uuid.uuid4())
         self._peers = PeerLiveness(limits.lease_s)
         self._renew_at_s = 0.0
-        self._pool = workers or WorkerPool(limits.workers, prepare_worker, is_ending)
+        self._pool = workers or WorkerPool(limits.workers, prepare_worker, is_ending, self.wake)
         self._pool_problem: str | None = None
         self._has_no_store = False
         self._in_flight: dict[str, Future[Outcome]] = {}
@@ -141,6 +141,8 @@ class JobRunner:
             self._answers.refuse(self._pool_problem)
             return
         self._loading = self._pool.loading()
+        if self._loading:
+            return
         while self._has_free_worker() and self._answers.begin(self._pool):
             pass
         self._claim_jobs()

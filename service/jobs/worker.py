@@ -30,7 +30,7 @@ def prepare_worker() -> None:
     from core.warm_up import warm_up
 
     follow_service()
-    warm_up()
+    warm_up()  # nothing is left to do where its parent has done it
 
 
 def diagnose_recording(task: DiagnosisTask) -> Outcome:

@@ -1,7 +1,4 @@
-"""Prepare a worker process, and tie it to the service it belongs to.
-
-A worker imports this first: it has to be small.
-"""
+"""Prepare a worker process, and tie it to the service it belongs to."""
 
 import multiprocessing
 import os
@@ -38,16 +35,26 @@ def prepare(prepare_worker: Callable[[], None], prepared: Semaphore) -> None:
     prepared.release()
 
 
+LOOK_S: Final = 1.0
+"""How often a worker looks whether the process that it was forked from is still there."""
+
+
 def follow_service() -> None:
-    """End this worker when the service says so, or with the service."""
+    """End this worker when the service says so, or with the service, or with the parent of the workers."""
     leave_to_parent(signal.SIGINT)  # Ctrl-C reaches the whole process group
     service = multiprocessing.parent_process()
     if service is None:
         raise RuntimeError("this is no worker process: it has no parent among Python's processes")
-    threading.Thread(target=_end_with, args=(service.sentinel,), name="service-watch", daemon=True).start()
+    threading.Thread(
+        target=_end_with, args=(service.sentinel, os.getppid()), name="service-watch", daemon=True
+    ).start()
 
 
-def _end_with(sentinel: int) -> None:
-    """End this process when that of the sentinel has ended."""
-    wait([sentinel])
+def _end_with(sentinel: int, parent: int) -> None:
+    """End this process when that of the sentinel has ended, or another one has become its parent.
+
+    Without the parent the service does not hear of this process, and takes it for ended.
+    """
+    while not wait([sentinel], LOOK_S) and os.getppid() == parent:
+        pass
     os._exit(1)  # whatever the worker computes now, nobody is left to take it

@@ -196,6 +196,23 @@ def descendants(process_id: int) -> list[int]:
     return found[1:]
 
 
+FORKED = b"multiprocessing.forkserver"
+"""In the command line of the workers' parent, and so of the workers."""
+
+
+def workers_of(process_id: int) -> list[int]:
+    """Workers of a service: forked from their parent, which is a child of the service."""
+    forked = [one for one in descendants(process_id) if FORKED in _command_line(one)]
+    return [worker for parent in forked for worker in descendants(parent)]
+
+
+def _command_line(process_id: int) -> bytes:
+    try:
+        return Path(f"/proc/{process_id}/cmdline").read_bytes()
+    except OSError:  # it ended meanwhile
+        return b""
+
+
 def is_alive(process_id: int) -> bool:
     """Whether a process runs; one that ended and was not waited for does not."""
     try:

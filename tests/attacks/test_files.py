@@ -16,12 +16,14 @@ from service.client.rest_client import ServiceClient
 from service.configuration.relay_access import PASSWORD_VARIABLE
 from testing.ports import free_port
 from testing.service.processes import (
+    FORKED,
     Service,
     descendants,
     link_states,
     running_service,
     simulated_plant,
     switched_off_plant,
+    workers_of,
 )
 from testing.waiting import eventually
 
@@ -170,19 +172,25 @@ def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
         yield running
 
 
+KINDS = {"collector", "gateway", "parent", "worker"}
+"""Of processes of a service: `parent` is that of the workers."""
+
+
 def children(service: Service) -> Mapping[str, int]:
     """The processes of the service by what they do."""
-    kinds = {"service.collector": "collector", "service.gateways": "gateway", "spawn_main": "worker"}
-    return {
+    kinds = {"service.collector": "collector", "service.gateways": "gateway", FORKED.decode(): "parent"}
+    workers = workers_of(service.process_id)
+    others = {
         kind: process_id
         for process_id in descendants(service.process_id)
         for mark, kind in kinds.items()
-        if mark in command_of(process_id)
+        if mark in command_of(process_id) and process_id not in workers
     }
+    return {**others, "worker": workers[0]} if workers else others
 
 
 def test_a_child_reads_secrets_that_are_not_its_own(service: Service) -> None:
-    assert eventually(lambda: set(children(service)) == {"collector", "gateway", "worker"}, 30)
+    assert eventually(lambda: set(children(service)) == KINDS, 30)
     seen = {
         kind: {
             secret
@@ -191,17 +199,17 @@ def test_a_child_reads_secrets_that_are_not_its_own(service: Service) -> None:
         }
         for kind, process_id in children(service).items()
     }
-    assert seen == {"collector": {OF_A_RELAY}, "gateway": set(), "worker": set()}
+    assert seen == {"collector": {OF_A_RELAY}, "gateway": set(), "parent": set(), "worker": set()}
     with ServiceClient(service.url) as client:
         assert eventually(lambda: link_states(client)["A1_SEL710"] == "up", 30), "it knows its own"
 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root has capabilities to give up")
 def test_a_child_uses_capabilities_of_the_service(service: Service) -> None:
-    assert eventually(lambda: set(children(service)) == {"collector", "gateway", "worker"}, 30)
+    assert eventually(lambda: set(children(service)) == KINDS, 30)
     found = {kind: capabilities_of(process_id) for kind, process_id in children(service).items()}
     net_bind_service = 1 << 10
-    assert found == {"collector": {0}, "worker": {0}, "gateway": {0, net_bind_service}}
+    assert found == {"collector": {0}, "parent": {0}, "worker": {0}, "gateway": {0, net_bind_service}}
 
 
 def unit() -> Mapping[str, list[str]]:

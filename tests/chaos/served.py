@@ -13,7 +13,7 @@ from typing import IO
 
 from service.client.rest_client import ServiceClient
 from testing.service.accounts import log_in_before_start
-from testing.service.processes import descendants, is_alive, service_environment
+from testing.service.processes import descendants, is_alive, service_environment, workers_of
 from testing.waiting import eventually
 from tests.chaos.history import History
 
@@ -82,7 +82,8 @@ class ServedService:
         return self._below("service.collector")
 
     def workers(self) -> list[int]:
-        return self._below("spawn_main")
+        main = self.process_id
+        return [] if main is None else sorted(filter(is_alive, workers_of(main)))
 
     def all_processes(self) -> list[int]:
         main = self.process_id

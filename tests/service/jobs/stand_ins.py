@@ -16,9 +16,6 @@ from testing.service.rotor_and_supply import BROKEN_ROTOR, ECCENTRIC_ROTOR, SUPP
 from testing.service.starts import START
 from testing.waiting import wait_until
 
-GO = "STAND_IN_GO"
-"""Environment variable with the path of the file that lets a worker go on."""
-
 STRANGE = "channel IA\0\ud800 "
 """What a channel may be called in a record: PostgreSQL cannot hold the one, UTF-8 not the other."""
 
@@ -103,10 +100,10 @@ def act_as_told(task: DiagnosisTask) -> Outcome:
     return Diagnosed(findings_of(fault()), NOW_NS)
 
 
-def prepare_when_told() -> None:
-    """A worker that loads until the file named in the environment is there."""
+def prepare_when_told(go: Path) -> None:
+    """A worker that loads until the file is there."""
     follow_service()
-    wait_until(lambda: Path(os.environ[GO]).exists())
+    wait_until(go.exists)
 
 
 def fail_to_start() -> None:

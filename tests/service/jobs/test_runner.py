@@ -1,7 +1,6 @@
 """The job runner with real worker processes."""
 
-import errno
-import multiprocessing.util
+import multiprocessing.forkserver
 import os
 import signal
 import time
@@ -24,7 +23,6 @@ from testing.service.rotor_and_supply import ECCENTRIC_ROTOR, SWINGING_LOAD
 from testing.waiting import wait_until
 from tests.service.jobs.running import LIMITS, add, ended, running
 from tests.service.jobs.stand_ins import (
-    GO,
     RESULTS,
     STRANGE,
     UNMOUNTING,
@@ -279,12 +277,11 @@ def test_two_services_share_the_jobs_and_one_takes_over_from_a_killed_one(
 
 
 def test_the_runner_is_not_ready_before_its_workers_are(
-    repository: Repository, store: FolderStore, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    repository: Repository, store: FolderStore, tmp_path: Path
 ) -> None:
     go = tmp_path / "go"
-    monkeypatch.setenv(GO, str(go))
     recording_id = add(repository, store, "fine")
-    with running(repository, store, prepare_worker=prepare_when_told) as runner:
+    with running(repository, store, prepare_worker=partial(prepare_when_told, go)) as runner:
         assert runner.problem() == "2 of 2 workers are still loading"
         assert not ended(repository, recording_id)
         go.touch()
@@ -303,20 +300,20 @@ def test_workers_that_cannot_start_show_in_the_problem(repository: Repository, s
 
 @pytest.fixture
 def exhausted(monkeypatch: pytest.MonkeyPatch) -> Event:
-    """While it is set, the system gives no process: fork fails, as at a limit of processes."""
+    """While it is set, the workers' parent gets no process: it ends, and its sockets with it."""
     at_the_limit = Event()
-    fork = multiprocessing.util.spawnv_passfds
+    fork = multiprocessing.forkserver.connect_to_new_process
 
-    def fork_or_fail(path: bytes, arguments: Sequence[str | bytes], passed: Sequence[int]) -> int:
+    def fork_or_fail(passed: Sequence[int]) -> tuple[int, int]:
         if at_the_limit.is_set():
-            raise BlockingIOError(errno.EAGAIN, os.strerror(errno.EAGAIN))
-        return fork(path, arguments, passed)
+            raise EOFError("unexpected EOF")
+        return fork(passed)
 
-    monkeypatch.setattr(multiprocessing.util, "spawnv_passfds", fork_or_fail)
+    monkeypatch.setattr(multiprocessing.forkserver, "connect_to_new_process", fork_or_fail)
     return at_the_limit
 
 
-NO_PROCESS = f"cannot be started: [Errno {errno.EAGAIN}]"
+NO_PROCESS = "cannot be started: their parent has ended"
 
 
 def test_a_start_that_gets_no_process_is_told_and_tried_again(
@@ -348,6 +345,20 @@ def test_workers_that_die_while_the_system_has_no_process_to_give_are_replaced_l
     assert repository.recording(recording_id).state is RecordingState.DIAGNOSED
 
 
+def test_workers_whose_parent_dies_are_replaced_and_none_is_left(
+    repository: Repository, store: FolderStore
+) -> None:
+    with running(repository, store) as runner:
+        wait_until(lambda: runner.problem() is None)
+        before = idle_workers()
+        (parent,) = {parent_of(worker) for worker in before}
+        os.kill(parent, signal.SIGKILL)
+        recording_id = add(repository, store, "fine")
+        wait_until(lambda: ended(repository, recording_id))
+        wait_until(lambda: not any(alive(worker) for worker in before))
+    assert repository.recording(recording_id).state is RecordingState.DIAGNOSED
+
+
 def test_workers_that_die_idle_are_replaced(repository: Repository, store: FolderStore) -> None:
     with running(repository, store) as runner:
         wait_until(lambda: runner.problem() is None)
@@ -357,6 +368,11 @@ def test_workers_that_die_idle_are_replaced(repository: Repository, store: Folde
         wait_until(lambda: ended(repository, recording_id))
         wait_until(lambda: runner.problem() is None)
     assert repository.recording(recording_id).state is RecordingState.DIAGNOSED
+
+
+def parent_of(process_id: int) -> int:
+    status = Path(f"/proc/{process_id}/status").read_text()
+    return next(int(line.split()[1]) for line in status.splitlines() if line.startswith("PPid:"))
 
 
 def idle_workers() -> list[int]:

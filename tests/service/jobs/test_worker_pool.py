@@ -50,9 +50,14 @@ def running_pool(prepare_worker: Callable[[], None]) -> Iterator[WorkerPool]:
     pool = WorkerPool(2, prepare_worker, is_ending=lambda: False)
     try:
         pool.renew()
+        wait_until(lambda: is_ready(pool), "workers")
         yield pool
     finally:
         pool.stop()
+
+
+def is_ready(pool: WorkerPool) -> bool:
+    return not pool.has_ended() and not pool.loading()
 
 
 def answers(pool: WorkerPool) -> bool:

@@ -299,6 +299,7 @@ def _of_job_worker() -> str:
     pool = WorkerPool(1, warm_up, is_ending=lambda: False)
     pool.renew()
     try:
+        wait_until(lambda: not pool.has_ended() and not pool.loading(), "a worker", LONGEST_S)
         return pool.schedule(_capabilities, "self", LONGEST_S).result()
     finally:
         pool.stop()
