@@ -41,6 +41,5 @@ def test_a_caller_without_a_setting_computes_on_one_thread_and_has_its_own_back(
     found = subprocess.run(
         [sys.executable, "-c", SCRIPT], env=environment, capture_output=True, text=True, check=True
     )
-    assert found.stdout.splitlines() == [
-        f"{name} {{1}} {{2}}" for name in ("commission", "diagnose", "examine")
-    ]
+    names = ("commission", "diagnose", "examine")
+    assert found.stdout.splitlines() == [f"{name} {{1}} {{2}}" for name in names]
