@@ -7,6 +7,7 @@ those of a linear model. What it does tell is how far the phasors themselves may
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 from math import pi
 
 import numpy as np
@@ -126,7 +127,7 @@ def fundamental_of(case: Case) -> Fundamental:
 def phasors_of(signals: Array, case: Case) -> ComplexArray:
     """Find the phasors of further signals of a record, at the same instant and over the same cycles."""
     window = _window(case)
-    found, _ = _harmonics(signals[:, -window.turning.size :].astype(np.complex128), window)
+    found = _harmonics(signals[:, -window.turning.size :].astype(np.complex128), window)
     return np.asarray(2.0 * found[:, window.highest + 1])
 
 
@@ -150,44 +151,40 @@ def _components(forward: ComplexArray, backward: ComplexArray) -> Array:
 class _Window:
     """The last whole cycles of a record, and how they are weighed.
 
-    turning: exp(-j w t) of each sample (n,).  weight (n,).  highest: highest order that the sampling tells.
+    powers: exp(-j k w t) of each sample, for orders k from 0 to the highest that the sampling tells (orders,
+    n).  weight (n,).  gram: inner products of the harmonics -highest to highest, so weighed.
     """
 
     cycles: int
-    turning: ComplexArray
+    powers: ComplexArray
     weight: Array
-    highest: int
+    gram: ComplexArray
+
+    @property
+    def turning(self) -> ComplexArray:
+        """exp(-j w t) of each sample (n,)."""
+        return np.asarray(self.powers[1])
+
+    @property
+    def highest(self) -> int:
+        """Highest order that the sampling tells."""
+        return len(self.powers) - 1
 
 
 def _window(case: Case) -> _Window:
     recorded, per_cycle = case.current_ab.shape[1], case.sample_rate_hz / case.frequency_hz
     longest = min(recorded, round(LONGEST_WINDOW_S * case.sample_rate_hz))
     cycles = int(longest / per_cycle + CYCLE_SHORT)
-    samples = min(round(cycles * per_cycle), recorded)
-    return _Window(
-        cycles=cycles,
-        turning=np.exp(-2j * pi / per_cycle * np.arange(samples)),
-        weight=tukey_window(samples, TAPERED),
-        highest=max(1, min(HIGHEST_ORDER, int(0.45 * per_cycle))),
-    )
+    return _window_of(cycles, min(round(cycles * per_cycle), recorded), per_cycle)
 
 
-def _periodic(vectors: ComplexArray, window: _Window) -> tuple[ComplexArray, ComplexArray]:
-    """Weighted least-squares fit of the harmonics -highest to highest.
-
-    Returns coefficients of orders 1 and -1 (m, 2), and what of the vectors (m, n) is beside all harmonics.
-    """
-    highest = window.highest
-    found, powers = _harmonics(vectors, window)
-    periodic = (found[:, highest:].conj() @ powers).conj()
-    periodic += found[:, highest - 1 :: -1] @ powers[1:]
-    return found[:, [highest + 1, highest - 1]], vectors - periodic
-
-
-def _harmonics(vectors: ComplexArray, window: _Window) -> tuple[ComplexArray, ComplexArray]:
-    """Return the coefficients of the harmonics -highest to highest (m, orders), and the powers of turning."""
-    turning, weight, highest = window.turning, window.weight, window.highest
-    powers = np.empty((highest + 1, turning.size), dtype=np.complex128)
+@lru_cache(maxsize=1)
+def _window_of(cycles: int, samples: int, per_cycle: float) -> _Window:
+    """Make a window once for all signals of a record."""
+    turning = np.exp(-2j * pi / per_cycle * np.arange(samples))
+    weight = tukey_window(samples, TAPERED)
+    highest = max(1, min(HIGHEST_ORDER, int(0.45 * per_cycle)))
+    powers = np.empty((highest + 1, samples), dtype=np.complex128)
     powers[0] = 1.0
     for order in range(highest):
         np.multiply(powers[order], turning, out=powers[order + 1])
@@ -196,10 +193,28 @@ def _harmonics(vectors: ComplexArray, window: _Window) -> tuple[ComplexArray, Co
     differences = np.concatenate([low, high[1:]])
     lag = np.subtract.outer(np.arange(differences.size), np.arange(differences.size))
     gram = np.where(lag >= 0, differences[np.abs(lag)], differences[np.abs(lag)].conj())
+    return _Window(cycles, powers, weight, gram)
+
+
+def _periodic(vectors: ComplexArray, window: _Window) -> tuple[ComplexArray, ComplexArray]:
+    """Weighted least-squares fit of the harmonics -highest to highest.
+
+    Returns coefficients of orders 1 and -1 (m, 2), and what of the vectors (m, n) is beside all harmonics.
+    """
+    highest, powers = window.highest, window.powers
+    found = _harmonics(vectors, window)
+    periodic = (found[:, highest:].conj() @ powers).conj()
+    periodic += found[:, highest - 1 :: -1] @ powers[1:]
+    return found[:, [highest + 1, highest - 1]], vectors - periodic
+
+
+def _harmonics(vectors: ComplexArray, window: _Window) -> ComplexArray:
+    """Return the coefficients of the harmonics -highest to highest (m, orders)."""
+    powers, weight = window.powers, window.weight
     # The basis turns the other way than `powers`: order k of it is their conjugate.
     forwards, backwards = _sums(powers, weight * vectors), _sums(powers, weight * vectors.conj()).conj()
     products = np.concatenate([backwards[:, :0:-1], forwards], axis=1)
-    return np.asarray(np.linalg.solve(gram, products.T).T, dtype=np.complex128), powers
+    return np.asarray(np.linalg.solve(window.gram, products.T).T, dtype=np.complex128)
 
 
 def _sums(powers: ComplexArray, values: ComplexArray | Array) -> ComplexArray:

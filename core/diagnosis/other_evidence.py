@@ -9,6 +9,7 @@ machine's, are integrated over:
 Where a size is positive, as a joint's, ln 2 Phi(size / deviation) is added.
 """
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from math import log, sqrt
 from typing import Final
@@ -99,8 +100,8 @@ class OtherCauses:
             *self._parameters(),
         ]
         found: dict[Cause, Weighed] = {}
-        for one in signatures:
-            this, before = self._weighed(one), found.get(one.cause)
+        for one, this in zip(signatures, self._weighed(signatures), strict=True):
+            before = found.get(one.cause)
             if before is not None:
                 likelier = max(this, before, key=lambda each: each.log_evidence)
                 total = float(np.logaddexp(this.log_evidence, before.log_evidence))
@@ -109,31 +110,42 @@ class OtherCauses:
         return found
 
     def projected(self, columns: Array, loss: Array) -> Array:
-        """Return the information of columns that is left where slip and offset are free."""
+        """Return the information of columns that is left where slip and offset are free.
+
+        Both may be stacks of as many, which are taken one by one.
+        """
         J = self._slopes
         H = J.T @ loss @ J + self._prior
         across = J.T @ loss @ columns
-        return np.asarray(columns.T @ loss @ columns - across.T @ np.linalg.solve(H, across))
+        taken = np.swapaxes(across, -1, -2) @ np.linalg.solve(H, across)
+        return np.asarray(np.swapaxes(columns, -1, -2) @ loss @ columns - taken)
 
-    def _weighed(self, signature: Signature) -> Weighed:
-        """Fit slip and offset with the errors that a healthy machine has and those of a signature."""
-        errors, U = self._errors, signature.columns * signature.spread
-        covariance = self._point.covariance + U @ U.T
-        record, work = errors.compared(covariance, self._slips), np.empty((5, 4))
-        starts = (self._point.slip, self._point.offset_s), (0.5 * self._slips.rated, 0.0)
-        found, slip, offset = max(fit(record, errors.machine, HEALTHY, *start, work) for start in starts)
-        loss = np.asarray(np.linalg.inv(covariance))
-        left = errors.residual(HEALTHY, slip, offset)
-        size = float(U[:, 0] @ loss @ left)
+    def _weighed(self, signatures: Sequence[Signature]) -> Iterator[Weighed]:
+        """Fit slip and offset with the errors that a healthy machine has and those of each signature."""
+        errors, point = self._errors, self._point
+        most = max(one.spread.size for one in signatures)
+        U = np.zeros((len(signatures), point.covariance.shape[0], most))
+        for place, one in zip(U, signatures, strict=True):
+            place[:, : one.spread.size] = one.columns * one.spread
+        covariances = point.covariance + U @ np.swapaxes(U, -1, -2)
+        losses: Array = np.asarray(np.linalg.inv(covariances), dtype=np.float64)
+        first = U[:, :, :1]
         # Covariance of the sizes, over their spreads: I - U' M^-1 U, slip and offset free.
-        known = float(self.projected(U[:, :1], loss)[0, 0])
-        deviation = sqrt(max(1.0 - known, 1e-9))
-        found += errors.log_constant(covariance) + log(signature.share)
-        if signature.one_sided:
-            found += log(2.0) + float(log_ndtr(size / deviation))
-        unit = float(signature.spread[0])
-        words = signature.size_in_words(size * unit, deviation * unit)
-        return Weighed(found, f"{signature.place}: {words}" if signature.place else words, loss)
+        known = self.projected(first, losses)[:, 0, 0]
+        deviations = np.sqrt(np.maximum(1.0 - known, 1e-9)).tolist()
+        constants = errors.log_constants(covariances).tolist()
+        work = np.empty((5, 4))
+        starts = (point.slip, point.offset_s), (0.5 * self._slips.rated, 0.0)
+        for k, record in enumerate(errors.compared_by_each(covariances, self._slips)):
+            found, slip, offset = max(fit(record, errors.machine, HEALTHY, *start, work) for start in starts)
+            size = float(first[k, :, 0] @ losses[k] @ errors.residual(HEALTHY, slip, offset))
+            one, deviation = signatures[k], deviations[k]
+            found += constants[k] + log(one.share)
+            if one.one_sided:
+                found += log(2.0) + float(log_ndtr(size / deviation))
+            unit = float(one.spread[0])
+            words = one.size_in_words(size * unit, deviation * unit)
+            yield Weighed(found, f"{one.place}: {words}" if one.place else words, losses[k])
 
     def _channels(self) -> list[Signature]:
         errors, slip = self._errors, self._point.slip

@@ -279,32 +279,51 @@ class RecordErrors:
 
     def log_constant(self, covariance: Array) -> float:
         """Return what of the log of the likelihood does not depend on the hypothesis."""
-        logdet = float(np.linalg.slogdet(covariance)[1])
-        zero = self.residual(HEALTHY, 0.0, 0.0)[4:]
-        return -0.5 * (logdet + float(zero @ np.linalg.solve(covariance[4:, 4:], zero)))
+        return float(self.log_constants(covariance[np.newaxis])[0])
+
+    def log_constants(self, covariances: Array) -> Array:
+        """Return that of each covariance, shape (n,); they are of shape (n, figures, figures)."""
+        logdets = np.linalg.slogdet(covariances)[1]
+        zero = self._zero_sequences()
+        given = np.linalg.solve(covariances[:, 4:, 4:], zero[:, np.newaxis])[..., 0]
+        return np.asarray(-0.5 * (logdets + given @ zero))
 
     def compared(self, covariance: Array, slip_range: tuple[float, float, float]) -> ComparedRecord:
         """Return what the inner loop compares: currents, given what the zero sequences show."""
+        return self.compared_by_each(covariance[np.newaxis], slip_range)[0]
+
+    def compared_by_each(
+        self, covariances: Array, slip_range: tuple[float, float, float]
+    ) -> list[ComparedRecord]:
+        """Return that for each covariance; they are of shape (n, figures, figures)."""
         figures = self.figures
-        expected, given = np.zeros(4), covariance[:4, :4]
-        if covariance.shape[0] > 4:
-            zero = self.residual(HEALTHY, slip_range[0], 0.0)[4:]
-            share = np.linalg.solve(covariance[4:, 4:], covariance[4:, :4]).T
-            expected, given = share @ zero, given - share @ covariance[4:, :4]
+        zero = self._zero_sequences()
+        of_zero, across = covariances[:, 4:, 4:], covariances[:, 4:, :4]
+        share = np.linalg.solve(of_zero, across).transpose(0, 2, 1)
+        expected, given = share @ zero, covariances[:, :4, :4] - share @ across
         rated, lowest, highest = slip_range
-        return ComparedRecord(
-            angular_frequency=figures.angular_frequency,
-            admittance=figures.admittance,
-            negative_current=figures.negative_current_S,
-            negative_voltage=figures.negative_voltage,
-            admittance_scale=self.admittance_scale,
-            negative_scale=self.negative_scale,
-            whitening=np.linalg.inv(np.linalg.cholesky(given)),
-            expected=expected,
-            rated_slip=rated,
-            lowest_slip=lowest,
-            highest_slip=highest,
-        )
+        return [
+            ComparedRecord(
+                angular_frequency=figures.angular_frequency,
+                admittance=figures.admittance,
+                negative_current=figures.negative_current_S,
+                negative_voltage=figures.negative_voltage,
+                admittance_scale=self.admittance_scale,
+                negative_scale=self.negative_scale,
+                whitening=whitening,
+                expected=one,
+                rated_slip=rated,
+                lowest_slip=lowest,
+                highest_slip=highest,
+            )
+            for whitening, one in zip(np.linalg.inv(np.linalg.cholesky(given)), expected, strict=True)
+        ]
+
+    def _zero_sequences(self) -> Array:
+        """Return the rows of the residual that no hypothesis changes."""
+        figures = self.figures
+        zero = 0j if figures.zero_voltage is None else figures.zero_voltage
+        return self.row(Figures(v0=zero, i0=figures.zero_current))[4:]
 
     def _negative_impedance(self, slip: float) -> complex:
         return 1.0 / ratios(self.machine, HEALTHY, self.figures.angular_frequency, 1.0 + 0j, slip).negative

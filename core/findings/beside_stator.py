@@ -167,8 +167,10 @@ def supply_of(
     """
     if acceptance.accepted is None and acceptance.operation is not Operation.NOT_RUNNING:
         return None, None
+    accepted = acceptance.accepted
+    frequency_hz = None if accepted is None else accepted.case.frequency_hz
     try:
-        figures = measure_supply(recording, motor)
+        figures = measure_supply(recording, motor, frequency_hz=frequency_hz)
     except RecordingError:
         return None, None
     except _NOT_COMPUTABLE as error:

@@ -1,11 +1,14 @@
 """Compilation of functions with numba, with typed signatures and a cache beside the source."""
 
 from collections.abc import Callable
+from contextlib import ExitStack
 from typing import Any, ParamSpec, TypeVar, cast
 
 import numba
+from numba.core import event
 
 from core.machines.compile_cache import ProgramCache
+from core.machines.compile_watch import entered
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -61,4 +64,30 @@ def compiled_as_written(function: Callable[P, R]) -> Callable[P, R]:
 
 def _cached(dispatcher: Any, function: Callable[P, R]) -> Callable[P, R]:
     dispatcher._cache = ProgramCache(function)  # noqa: SLF001  # as its own enable_caching() does
+    _compilations.of += 1
     return cast(Callable[P, R], dispatcher)
+
+
+class _Compilations(event.Listener):  # type: ignore[misc]  # numba has no types
+    """Tells those who watch. numba compiles one function at a time, and within it those that it calls."""
+
+    def __init__(self) -> None:
+        self.of = 0
+        self._ready = self._depth = 0
+        self._entered = ExitStack()
+
+    def on_start(self, event: Any) -> None:  # noqa: ARG002 - as numba calls it
+        self._depth += 1
+        if self._depth == 1:
+            self._entered = entered(self._ready, self.of)
+
+    def on_end(self, event: Any) -> None:
+        if isinstance(getattr(event.data["dispatcher"], "_cache", None), ProgramCache):
+            self._ready = min(self._ready + 1, self.of)
+        self._depth -= 1
+        if self._depth == 0:
+            self._entered.close()
+
+
+_compilations = _Compilations()
+event.register("numba:compile", _compilations)

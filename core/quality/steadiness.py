@@ -66,12 +66,13 @@ def steadiness(
         if UNSTEADY_CURRENT < amps <= LARGEST_SWING:
             left = without_swing(left, step_s, feed.frequency_hz)
             amps = _farthest(left) * of_rated
+    steady = amps <= UNSTEADY_CURRENT
+    moves = "" if steady else _what_moves(seen, step_s, feed.frequency_hz)  # that takes a long spectrum
     yield finding(
-        "steadiness", amps, UNSTEADY_CURRENT, "of rated", passed=amps <= UNSTEADY_CURRENT,
-        message=f"the current moves by {swing:.0%} of the rated one within the record: "
-        f"{_what_moves(seen, step_s, feed.frequency_hz)}",
+        "steadiness", amps, UNSTEADY_CURRENT, "of rated", passed=steady,
+        message=f"the current moves by {swing:.0%} of the rated one within the record: {moves}",
     )  # fmt: skip
-    if amps <= UNSTEADY_CURRENT < swing:
+    if steady and swing > UNSTEADY_CURRENT:
         period_s = swing_period_s(seen, step_s, feed.frequency_hz)
         often = "" if period_s is None else f" every {period_s:.2g} s"
         yield QualityFinding(
@@ -79,7 +80,7 @@ def steadiness(
             message=f"the load pulsates{often} and moves the current by {swing:.0%} of the rated one: what "
             "is steady beside it is diagnosed",
         )  # fmt: skip
-    if feed.assumed or amps > UNSTEADY_CURRENT:
+    if feed.assumed or not steady:
         return
     against = np.conj(_course(clarke(terminals.current_abc), currents.phasors, -per_cycle))
     # What the means of a cycle leave of a fast swing of the load shows here too.

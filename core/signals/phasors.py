@@ -36,6 +36,9 @@ SMALLEST_SIZE = 1e-300
 USUAL_SEARCH_HZ = (20.0, 120.0)
 """Where no motor says better: the mains of 50 and 60 Hz, and supplies that are off by far."""
 
+LARGEST_CONDITION = 1e4
+"""Condition of the normal equations, up to which they lose four digits; beyond it they are not used."""
+
 _MAX_ITERATIONS = 12
 _CONVERGED_CYCLES = 1e-8
 """Change of the whole record's phase at which the iteration stops [cycles]; far below any noise."""
@@ -85,11 +88,17 @@ def harmonic_phasors(
             f"at {sample_rate_hz:g} Hz"
         )
     size = _size(x)
-    theta = np.outer(2 * pi * frequency_hz / sample_rate_hz * np.arange(n), np.asarray(orders))
     # Re{X e^jθ} sqrt(2) = sqrt(2) (Re X cos θ - Im X sin θ)
-    basis = np.concatenate([sqrt(2) * np.cos(theta), -sqrt(2) * np.sin(theta), np.ones((n, 1))], axis=1)
-    solution, _, rank, _ = np.linalg.lstsq(basis, (x / size).reshape(-1, n).T)
-    if rank < basis.shape[1] or np.abs(solution).max(initial=0.0) > LARGEST_PHASOR / size:
+    theta = 2 * pi * frequency_hz / sample_rate_hz * np.arange(n, dtype=np.float64)
+    vectors = sqrt(2) * _rotating_vectors(theta, np.asarray(orders))
+    basis = np.concatenate([vectors.real, -vectors.imag, np.ones((1, n))])
+    samples = (x / size).reshape(-1, n)
+    gram = basis @ basis.T
+    if np.linalg.cond(gram) < LARGEST_CONDITION:
+        solution, rank = np.linalg.solve(gram, basis @ samples.T), len(basis)
+    else:
+        solution, _, rank, _ = np.linalg.lstsq(basis.T, samples.T)
+    if rank < len(basis) or np.abs(solution).max(initial=0.0) > LARGEST_PHASOR / size:
         raise SignalError(
             f"orders {tuple(orders)} of {frequency_hz:g} Hz cannot be told apart in {n} samples "
             f"at {sample_rate_hz:g} Hz"

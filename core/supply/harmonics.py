@@ -87,17 +87,14 @@ def harmonics_of(x: NDArray[np.float64], frequency_hz: float, sample_rate_hz: fl
 
 def _fitted(blocks: NDArray[np.float64], per_cycle: float, highest: int) -> NDArray[np.complex128]:
     """Fit phasors, rms, by the first sample of each block (..., n), shape (..., highest)."""
-    found = blocks @ _projection(blocks.shape[-1], per_cycle, highest).T
-    return np.asarray((found[..., 1 : highest + 1] - 1j * found[..., highest + 1 :]) / sqrt(2.0))
-
-
-def _projection(length: int, per_cycle: float, highest: int) -> NDArray[np.float64]:
-    """Return the rows that give offset, cosines and sines of a block, shape (2 highest + 1, length)."""
+    length = blocks.shape[-1]
     turning = np.exp(2j * pi / per_cycle * np.arange(length))
     powers = np.multiply.accumulate(np.broadcast_to(turning, (highest, length)))
     basis = np.concatenate([np.ones((1, length)), powers.real, powers.imag])
     weighted = basis * np.sin(pi * (np.arange(length) + 0.5) / length) ** 2
-    return np.asarray(np.linalg.solve(weighted @ basis.T, weighted))
+    products = (blocks @ weighted.T)[..., np.newaxis]
+    found = np.linalg.solve(weighted @ basis.T, products)[..., 0]
+    return np.asarray((found[..., 1 : highest + 1] - 1j * found[..., highest + 1 :]) / sqrt(2.0))
 
 
 def _phases(supply: NDArray[np.complex128]) -> NDArray[np.float64]:

@@ -41,7 +41,7 @@ STEADY = 0.1
 Array = NDArray[np.float64]
 
 
-def measure_supply(recording: Recording, motor: Motor) -> SupplyFigures:
+def measure_supply(recording: Recording, motor: Motor, *, frequency_hz: float | None = None) -> SupplyFigures:
     """Measure the supply.
 
     Parameters
@@ -50,6 +50,8 @@ def measure_supply(recording: Recording, motor: Motor) -> SupplyFigures:
         A recording with voltages. The motor may stand.
     motor : Motor
         Nameplate, channel names and ratios of the motor.
+    frequency_hz : float or None, optional
+        Frequency at the record's end, where it is known; else it is estimated [Hz].
 
     Returns
     -------
@@ -76,7 +78,9 @@ def measure_supply(recording: Recording, motor: Motor) -> SupplyFigures:
     )
     voltage_ab = _voltages(recording.source, measured, nameplate)
     rate = measured.sample_rate_hz
-    found = _harmonics(recording.source, voltage_ab, measured.current_abc, rate, nameplate)
+    if frequency_hz is None:
+        frequency_hz = _frequency_hz(recording.source, voltage_ab, rate, nameplate)
+    found = _harmonics(recording.source, voltage_ab, measured.current_abc, rate, frequency_hz)
     volts, amps = found.phasors[:3], found.phasors[3:]
     lines_V = np.abs(volts[:, 0])
     if lines_V.mean() < NO_VOLTAGE * nameplate.rated_voltage_V:
@@ -130,17 +134,19 @@ def _voltages(source: str, measured: Terminals, nameplate: Nameplate) -> Array:
     return measured.voltage_ab
 
 
-def _harmonics(
-    source: str, voltage_ab: Array, current_abc: Array, rate_hz: float, nameplate: Nameplate
-) -> Harmonics:
-    """Fit the harmonics of the line voltages ab, bc, ca and of the line currents."""
-    samples = max(1, round(FREQUENCY_FROM_S * rate_hz))
+def _frequency_hz(source: str, voltage_ab: Array, rate_hz: float, nameplate: Nameplate) -> float:
+    """Return the frequency from which the record's mean frequency is found."""
+    last = voltage_ab[:, -max(1, round(FREQUENCY_FROM_S * rate_hz)) :]
     try:
-        frequency_hz = fundamental_frequency(
-            voltage_ab[:, -samples:], rate_hz, search_hz=nameplate.frequency_range_Hz
-        )
+        return fundamental_frequency(last, rate_hz, search_hz=nameplate.frequency_range_Hz)
     except SignalError as error:
         raise NoSupplyError(source, "voltages", expected="those of a supply", found=str(error)) from error
+
+
+def _harmonics(
+    source: str, voltage_ab: Array, current_abc: Array, rate_hz: float, frequency_hz: float
+) -> Harmonics:
+    """Fit the harmonics of the line voltages ab, bc, ca and of the line currents."""
     cycles = voltage_ab.shape[1] * frequency_hz / rate_hz
     if cycles < FEWEST_CYCLES - CYCLE_SHORT:
         raise NoSupplyError(

@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from core.error_words import one_line
+from core.machines.compile_watch import watched
 from service.cli.commands import (
     access,
     alarms,
@@ -26,6 +27,7 @@ from service.cli.commands import (
     service,
     stored,
 )
+from service.cli.compilation import CompilationBar
 from service.cli.output import DONE, FAILED, WRONG_USE, CommandError, defect, print_failure
 
 app = typer.Typer(
@@ -85,7 +87,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     # The demo's --json names a file, which the command writes itself.
     in_json = "--json" in words and words[0] != "demo"
     try:
-        return _run(words, in_json=in_json)
+        with watched(CompilationBar()):
+            return _run(words, in_json=in_json)
     except Exception as error:  # noqa: BLE001  whatever a command did not expect is told, and is a defect
         print_failure(defect(error), in_json=in_json)
         return FAILED

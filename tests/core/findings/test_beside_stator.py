@@ -70,7 +70,7 @@ def test_figures_of_the_supply_that_are_not_finite_are_a_reason(
     expected = examine(record, REFERENCE)
     assert expected.supply is not None
     figures = endless(expected.supply)
-    monkeypatch.setattr(beside_stator, "measure_supply", lambda *_: figures)
+    monkeypatch.setattr(beside_stator, "measure_supply", lambda *_, **__: figures)
     found = examine(record, REFERENCE)
     assert found.supply is None
     assert found.diagnosis.reasons == (
