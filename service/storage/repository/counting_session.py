@@ -15,6 +15,7 @@ from service.storage.states import JobState
 
 COUNTED = (RecordingRow, RecordingRequestRow, JobRow)
 _CHANGES = "changes of state counts"
+_HELD = "rows that were read"
 _COUNTS = Base.metadata.tables[StateCountRow.__tablename__]
 _COUNT = (
     update(_COUNTS)
@@ -30,7 +31,13 @@ class CountingSession(Session):
     """Keeps the state counts in step with the rows that are added, changed and deleted through it.
 
     It sees what goes through objects; no statement may change the state of a counted table's rows directly.
+    It holds what it has read: a row that several functions ask for is read once.
     """
+
+
+@event.listens_for(CountingSession, "loaded_as_persistent")
+def _hold(session: Session, row: object) -> None:
+    session.info.setdefault(_HELD, []).append(row)
 
 
 @event.listens_for(CountingSession, "after_flush")

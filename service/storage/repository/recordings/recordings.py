@@ -2,6 +2,7 @@
 
 import uuid
 from dataclasses import dataclass
+from functools import partial
 
 from sqlalchemy import ColumnElement, bindparam, delete, func, literal_column, select
 from sqlalchemy.orm import Session
@@ -93,9 +94,12 @@ class RecordingRows(Sessions):
                     require_room(session, motor, most_queued)
                 if relay is None or remote is None:
                     row = brought(session, motor, stored.name, RecordingSource.UPLOAD, now_ns)
+                    _fill(session, row, stored, now_ns)
                 else:
-                    row = recording_to_fill(session, relay, motor, remote, now_ns)
-                fill(session, row, stored, now_ns)
+                    filling = partial(_fill, session, stored=stored, now_ns=now_ns)
+                    row = recording_to_fill(session, relay, motor, remote, now_ns, filling)
+                session.flush()
+                _list_files(session, row, stored)
                 priority = JobPriority.UPLOAD if relay is None else JobPriority.RELAY_RECORD
                 session.add(new_job(row, method, model, priority, now_ns))
                 if relay is None:
@@ -233,6 +237,12 @@ def brought(session: Session, motor: str, name: str, source: RecordingSource, no
 
 def fill(session: Session, row: RecordingRow, stored: StoredRecording, now_ns: int) -> None:
     """Give a recording its files."""
+    _fill(session, row, stored, now_ns)
+    session.flush()
+    _list_files(session, row, stored)
+
+
+def _fill(session: Session, row: RecordingRow, stored: StoredRecording, now_ns: int) -> None:
     row.digest = stored.digest
     row.size_bytes = stored.size_bytes
     row.state = RecordingState.FETCHED
@@ -240,8 +250,6 @@ def fill(session: Session, row: RecordingRow, stored: StoredRecording, now_ns: i
     row.fetched_ns = now_ns
     if row.ied is not None:
         give_clock(row, found(session, IedRow, row.ied, "relay"))
-    session.flush()
-    _list_files(session, row, stored)
 
 
 def _complete(session: Session, row: RecordingRow, stored: StoredRecording, now_ns: int) -> None:

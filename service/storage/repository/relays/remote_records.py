@@ -1,7 +1,7 @@
 """Records that relays list: announced the first time, and linked to the recordings that they become."""
 
 import uuid
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import astuple
 from typing import TypeVar
 
@@ -166,14 +166,32 @@ def recording_of(session: Session, relay: str, motor: str, remote: RemoteRecord,
 
 
 def recording_to_fill(
-    session: Session, relay: str, motor: str, remote: RemoteRecord, now_ns: int
+    session: Session,
+    relay: str,
+    motor: str,
+    remote: RemoteRecord,
+    now_ns: int,
+    fill: Callable[[RecordingRow], None],
 ) -> RecordingRow:
-    """Return the recording that new content belongs to: not one that holds other content already."""
-    row = recording_of(session, relay, motor, remote, now_ns)
-    return row if row.digest is None else _announce(session, relay, motor, remote, now_ns)
+    """Return the recording that new content belongs to, filled: not one that holds other content already."""
+    found(session, MotorRow, motor, "motor", lock=True)
+    link = remote_link(session, relay, remote)
+    row = None if link is None else found(session, RecordingRow, link.recording_id, "recording")
+    if row is None or row.digest is not None:
+        return _announce(session, relay, motor, remote, now_ns, link, fill)
+    fill(row)
+    return row
 
 
-def _announce(session: Session, relay: str, motor: str, remote: RemoteRecord, now_ns: int) -> RecordingRow:
+def _announce(
+    session: Session,
+    relay: str,
+    motor: str,
+    remote: RemoteRecord,
+    now_ns: int,
+    link: RemoteRecordRow | None = None,
+    fill: Callable[[RecordingRow], None] = lambda _row: None,
+) -> RecordingRow:
     found(session, IedRow, relay, "relay")
     row = RecordingRow(
         id=str(uuid.uuid4()),
@@ -187,9 +205,10 @@ def _announce(session: Session, relay: str, motor: str, remote: RemoteRecord, no
         attempts=0,
         announced_ns=now_ns,
     )
+    fill(row)
     session.add(row)
     session.flush()
-    link_remote_record(session, relay, remote, row)
+    _link(session, relay, remote, row, link)
     deleted = session.get(DeletedRemoteRecordRow, (relay, *astuple(remote)))
     if deleted is not None:  # a relay without times: this record only looks like the one that was deleted
         session.delete(deleted)
@@ -198,7 +217,12 @@ def _announce(session: Session, relay: str, motor: str, remote: RemoteRecord, no
 
 def link_remote_record(session: Session, relay: str, remote: RemoteRecord, row: RecordingRow) -> None:
     """Link what the relay lists to the recording; an announcement that this replaces is deleted."""
-    link = remote_link(session, relay, remote)
+    _link(session, relay, remote, row, remote_link(session, relay, remote))
+
+
+def _link(
+    session: Session, relay: str, remote: RemoteRecord, row: RecordingRow, link: RemoteRecordRow | None
+) -> None:
     if link is None:
         session.add(
             RemoteRecordRow(
