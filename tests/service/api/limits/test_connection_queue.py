@@ -158,7 +158,7 @@ def test_the_process_has_no_variable_and_no_file_of_the_service(monkeypatch: pyt
         (acceptor,) = set(descendants(os.getpid())) - before
         process = Path(f"/proc/{acceptor}")
         seen.append((process / "environ").read_text())
-        seen.append(" ".join(os.readlink(each) for each in (process / "fd").iterdir()))
+        seen.append(" ".join(str(each.readlink()) for each in (process / "fd").iterdir()))
 
     with (
         socket.create_server(("127.0.0.1", 0)) as listener,
