@@ -220,7 +220,7 @@ def test_a_child_uses_capabilities_of_the_service(service: Service) -> None:
     assert eventually(lambda: set(children(service)) == KINDS, 30)
     found = {kind: capabilities_of(process_id) for kind, process_id in children(service).items()}
     net_bind_service = 1 << 10
-    none = dict.fromkeys(("acceptor", "collector", "parent", "worker"), {0})
+    none = {kind: {0} for kind in ("acceptor", "collector", "parent", "worker")}
     assert found == none | {"gateway": {0, net_bind_service}}
 
 
