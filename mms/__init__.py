@@ -42,6 +42,7 @@ from mms.errors import (
 from mms.references import FunctionalConstraint
 from mms.security.credential_files import read_certificates, read_secret
 from mms.security.passwords import PASSWORD_RULE, is_password
+from mms.security.revocation import is_revoked, is_signed_by, parse_revocation_lists, without_revoked
 from mms.security.tls import TlsConfiguration, TlsVersion
 from mms.server.controls import ControlAction
 from mms.server.file_access import FileAnswer, FileOperation, FileRequest
@@ -105,7 +106,11 @@ __all__ = [
     "ValueRefused",
     "filter_tls_log_from_stderr",
     "is_password",
+    "is_revoked",
+    "is_signed_by",
     "mbed_tls_version",
+    "parse_revocation_lists",
     "read_certificates",
     "read_secret",
+    "without_revoked",
 ]

@@ -41,6 +41,27 @@ def read_secret(path: Path) -> bytes:
     return _read(path, secret=True)
 
 
+def read_public(path: Path) -> bytes:
+    """Read a file that everybody may read.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file.
+
+    Returns
+    -------
+    bytes
+        Its content.
+
+    Raises
+    ------
+    CredentialFileError
+        The file cannot be read, is empty or too large.
+    """
+    return _read(path, secret=False)
+
+
 def read_certificates(path: Path) -> tuple[x509.Certificate, ...]:
     """Read the certificates of a file.
 

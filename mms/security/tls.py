@@ -27,6 +27,7 @@ from mms.security.credential_files import (
     read_certificates,
     read_identity,
 )
+from mms.security.revocation import without_revoked
 
 TLS_PORT: Final = 3782
 """Port at which servers speak TLS by default (IEC 62351-3)."""
@@ -101,6 +102,8 @@ class TlsConfiguration:
         Certificates of those we speak with, at least one; more while one is being exchanged.
     ca : pathlib.Path, optional
         Authorities that sign the pinned certificates. None where those are self-signed.
+    crl : pathlib.Path, optional
+        Their lists of revoked certificates (CRL), read for each connection or server.
     version : TlsVersion, default TLS_1_2
         The one version to speak. Clients of Mbed TLS before 3.6.8 that offer 1.2 and 1.3 both have a flaw
         (CVE-2026-115490), so none offers both.
@@ -114,6 +117,7 @@ class TlsConfiguration:
     key: Path
     pinned: tuple[Path, ...]
     ca: Path | None = None
+    crl: Path | None = None
     version: TlsVersion = TlsVersion.TLS_1_2
 
     def check(self) -> None:
@@ -150,7 +154,8 @@ class _Credentials:
                 )
             pinned.extend(certificates)
         authorities = tuple(pinned) if configuration.ca is None else read_certificates(configuration.ca)
-        return cls(chain, key, tuple(pinned), authorities)
+        pinned_still = without_revoked(pinned, configuration.crl, configuration.ca)
+        return cls(chain, key, pinned_still, authorities)
 
 
 def unverified_context(version: TlsVersion) -> ssl.SSLContext:

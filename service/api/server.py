@@ -16,6 +16,7 @@ from service.api.access.certificate import ServerCertificate
 from service.api.limits.connection_guard import ConnectionGuard
 from service.api.limits.connection_queue import ConnectionQueue
 from service.api.limits.connections import EXTRA, ConnectionLimits, LimitedConnection, OpenConnections
+from service.api.limits.health import health_answer
 from service.configuration.settings import Settings
 from service.process.open_files import allow_open_files
 from service.process.termination import Termination
@@ -93,10 +94,13 @@ class ApiServer(uvicorn.Server):
             each.listen(QUEUE)
         await super().startup([])  # the sockets have queues of their own
         sys.setswitchinterval(SWITCH_INTERVAL_S)
+        health = b"" if self._certificate else await health_answer(self.config.loaded_app)
         for each in sockets or ():
             most = self._open.limits.waiting
             self._queues.append(
-                ConnectionQueue(each, self._serve_connection, most=most, tally=self._open.tally)
+                ConnectionQueue(
+                    each, self._serve_connection, most=most, tally=self._open.tally, health=health
+                )
             )
         if self._termination.is_asked:  # before this server handled signals
             self.should_exit = True
@@ -136,6 +140,8 @@ class ApiServer(uvicorn.Server):
         now_s = asyncio.get_running_loop().time()
         self._open.close_overdue(now_s)
         self._open.tally.tell(now_s)
+        for queue in self._queues:
+            queue.sign_of_life()
         if self._certificate is not None and now_s >= self._certificate_seen_s + CERTIFICATE_PERIOD_S:
             self._certificate_seen_s = now_s
             self._certificate.renew()

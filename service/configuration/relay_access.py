@@ -23,7 +23,7 @@ _VERSIONS: Final = {"1.2": TlsVersion.TLS_1_2, "1.3": TlsVersion.TLS_1_3}
 
 
 class RelayTls(BaseModel):
-    """Files for TLS with one relay (PEM or DER).
+    """Files for TLS with one relay (PEM or DER). crl: revoked certificates, of the authorities in ca.
 
     version: the one that is offered.  port: for TLS, where it is not the port of the SCD.
     """
@@ -34,6 +34,7 @@ class RelayTls(BaseModel):
     key: AbsolutePath
     pinned: tuple[AbsolutePath, ...] = Field(min_length=1)
     ca: AbsolutePath | None = None
+    crl: AbsolutePath | None = None
     version: Literal["1.2", "1.3"] = "1.2"
     port: int | None = Field(default=None, ge=1, le=65535)
 
@@ -43,6 +44,7 @@ class RelayTls(BaseModel):
             key=self.key,
             pinned=self.pinned,
             ca=self.ca,
+            crl=self.crl,
             version=_VERSIONS[self.version],
         )
 

@@ -42,8 +42,8 @@ PATHS = (
     "tls_certificate",
     "tls_key",
 )
-RELAY_PATHS = ("certificate", "key", "ca", "pinned", "password_file")
-GATEWAY_PATHS = ("certificate", "key", "ca", "pinned", "password_file", "trusted")
+RELAY_PATHS = ("certificate", "key", "ca", "crl", "pinned", "password_file")
+GATEWAY_PATHS = ("certificate", "key", "ca", "crl", "pinned", "password_file", "trusted")
 ACCESS_PATHS = ("ca", "client_secret_file")
 DASK_PATHS = ("ca", "certificate", "key")
 

@@ -60,3 +60,15 @@ def identity(
         )
     )
     return Identity(certificate, private_key, certificate_file, key_file)
+
+
+def revocation_list(authority: Identity, *revoked: Identity) -> bytes:
+    """The authority's list (CRL, PEM) of certificates that are no longer good."""
+    now = datetime.now(UTC)
+    builder = x509.CertificateRevocationListBuilder(
+        authority.certificate.subject, now - timedelta(hours=1), now + VALID
+    )
+    for each in revoked:
+        entry = x509.RevokedCertificateBuilder(each.certificate.serial_number, now - timedelta(hours=1))
+        builder = builder.add_revoked_certificate(entry.build())
+    return builder.sign(authority.private_key, hashes.SHA256()).public_bytes(serialization.Encoding.PEM)

@@ -1,27 +1,18 @@
-"""A service on a port of the loopback that attackers and its users log in at."""
+"""Who logs in at a service that is attacked, and with what."""
 
 import time
-from collections.abc import Callable, Iterator, MutableMapping
-from contextlib import ExitStack
-from pathlib import Path
-from typing import Any
+from collections.abc import Callable
 
 import httpx
-import pytest
-import structlog
+import pyotp
 
+from core.units import NANOSECONDS_PER_SECOND
 from service.access.passwords import hashed
-from service.api import ApiContext
-from service.configuration.settings import Settings
-from service.recording_store.store import RecordingStore
+from service.access.second_factors import STEP_S
 from service.storage import Repository
 from service.storage.records import Role
-from service.web.app import create_site
 from testing.service.accounts import TESTS
-from tests.service.api.serving import LONGEST_S, serving
-from tests.service.fixtures import database_url, engine, migrated_sqlite, repository, store
-
-__all__ = ["database_url", "engine", "logs", "migrated_sqlite", "repository", "serve", "store"]
+from tests.service.api.serving import LONGEST_S
 
 API = "/api/v1"
 LOGIN = f"{API}/login"
@@ -35,24 +26,17 @@ address: at which people reach it.
 """
 
 
-@pytest.fixture(autouse=True)
-def logs() -> Iterator[list[MutableMapping[str, Any]]]:
-    """What the service logs, kept from the screen: tracebacks for people take seconds to draw."""
-    with structlog.testing.capture_logs() as entries:
-        yield entries
+class Clock:
+    """The time of the service and of authenticator apps."""
 
+    def __init__(self) -> None:
+        self.now_ns = time.time_ns() // NANOSECONDS_PER_SECOND * NANOSECONDS_PER_SECOND
 
-@pytest.fixture
-def serve(repository: Repository, store: RecordingStore, tmp_path: Path) -> Iterator[Serve]:
-    with ExitStack() as services:
+    def next_step(self) -> None:
+        self.now_ns += STEP_S * NANOSECONDS_PER_SECOND
 
-        def started(address: str | None = None, **access: object) -> httpx.Client:
-            given = {"data_directory": tmp_path, "access": access, "notifications": {"address": address}}
-            settings = Settings.model_validate(given)
-            site = create_site(ApiContext(settings, repository, store))
-            return services.enter_context(serving(site, as_somebody=False))
-
-        yield started
+    def code(self, secret: str, steps: int = 0) -> str:
+        return pyotp.TOTP(secret).at(self.now_ns // NANOSECONDS_PER_SECOND, counter_offset=steps)
 
 
 def add_user(repository: Repository, name: str, *roles: Role) -> dict[str, str]:

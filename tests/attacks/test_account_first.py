@@ -11,30 +11,20 @@ from tests.attacks.login_service import (
     API,
     LOGIN,
     PASSWORD,
+    Clock,
     Serve,
     add_user,
     another,
-    database_url,
-    engine,
-    logs,
-    migrated_sqlite,
-    repository,
-    serve,
-    store,
 )
 from tests.attacks.test_second_factor import (
     ACCOUNT,
     MOTORS,
     REQUIRED,
     TOKENS,
-    Clock,
-    clock,
     elsewhere,
     one_time_code,
     set_up,
 )
-
-__all__ = ["clock", "database_url", "engine", "logs", "migrated_sqlite", "repository", "serve", "store"]
 
 OTHER, OWN = "quite another battery", "staple of my very own"
 USERS = f"{API}/users"

@@ -1,7 +1,6 @@
 """One takes more than a share: of time with a file, of places with open pages."""
 
 import time
-from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
 
@@ -15,7 +14,7 @@ from service.api.access.cookies import NAME
 from service.api.server import connection_limits
 from service.configuration.settings import Settings
 from service.recording_store.folder import FolderStore
-from service.storage import Repository, connect, migrate
+from service.storage import Repository
 from service.storage.records import Role
 from service.web.app import create_site
 from testing.service.listening import listening
@@ -43,15 +42,6 @@ def test_an_scl_file_of_many_namespaces_takes_the_time(tmp_path: Path) -> None:
     begun_s = time.process_time()
     scl.read(path)
     assert time.process_time() - begun_s < MOST_S
-
-
-@pytest.fixture
-def repository(tmp_path: Path) -> Iterator[Repository]:
-    url = f"sqlite:///{tmp_path / 'database.sqlite'}"
-    migrate(url)
-    engine = connect(url)
-    yield Repository(engine)
-    engine.dispose()
 
 
 def test_a_viewer_takes_all_places_for_live_updates(repository: Repository, tmp_path: Path) -> None:

@@ -16,16 +16,7 @@ from tests.attacks.login_service import (
     Serve,
     add_user,
     another,
-    database_url,
-    engine,
-    logs,
-    migrated_sqlite,
-    repository,
-    serve,
-    store,
 )
-
-__all__ = ["database_url", "engine", "logs", "migrated_sqlite", "repository", "serve", "store"]
 
 BEHIND_PROXY = {"proxy": {"addresses": ["127.0.0.1"]}}
 

@@ -21,10 +21,7 @@ from testing.service.accounts import token_of
 from testing.service.diagnosed import add_diagnosed
 from testing.service.plants import NOW_NS, healthy
 from tests.service.api.serving import serving
-from tests.service.fixtures import database_url, engine, migrated_sqlite, repository, store
 from tests.service.reports.reading import text_of
-
-__all__ = ["database_url", "engine", "migrated_sqlite", "repository", "store"]
 
 MOTOR = "/api/v1/motors/PUMP-A1"
 SMITH = "Chief Engineer Smith"

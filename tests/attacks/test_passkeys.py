@@ -34,16 +34,7 @@ from tests.attacks.login_service import (
     Serve,
     add_user,
     another,
-    database_url,
-    engine,
-    logs,
-    migrated_sqlite,
-    repository,
-    serve,
-    store,
 )
-
-__all__ = ["database_url", "engine", "logs", "migrated_sqlite", "repository", "serve", "store"]
 
 ADDRESS = "https://mcc.plant.example:8710"
 HOST = "mcc.plant.example"

@@ -20,16 +20,7 @@ from tests.attacks.login_service import (
     PASSWORD,
     Serve,
     add_user,
-    database_url,
-    engine,
-    logs,
-    migrated_sqlite,
-    repository,
-    serve,
-    store,
 )
-
-__all__ = ["database_url", "engine", "logs", "migrated_sqlite", "repository", "serve", "store"]
 
 NAME = "anna.maria-long"
 FULL_NAME = "Annabel Featherstone"

@@ -19,16 +19,7 @@ from tests.attacks.login_service import (
     Serve,
     add_user,
     another,
-    database_url,
-    engine,
-    logs,
-    migrated_sqlite,
-    repository,
-    serve,
-    store,
 )
-
-__all__ = ["database_url", "engine", "logs", "migrated_sqlite", "repository", "serve", "store"]
 
 MOTORS, TOKENS = f"{API}/motors", f"{API}/account/tokens"
 OIDC = f"{LOGIN}/oidc"

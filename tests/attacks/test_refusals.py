@@ -23,8 +23,8 @@ from service.audit.entries import AuditEntry
 from service.background.alarm_sources.attacks import LOOKED_BACK_S, MOST_TOKENS, AttackSource
 from service.configuration.described import described
 from service.configuration.settings import Settings, sqlite_url
-from service.recording_store.folder import FolderStore
-from service.storage import Repository, connect, migrate
+from service.recording_store.store import RecordingStore
+from service.storage import Repository, connect
 from service.storage.records import Actor, Role
 from testing.service.accounts import TESTS, token_of
 from testing.service.listening import listening
@@ -35,13 +35,8 @@ HOUR_NS = round(LOOKED_BACK_S * NANOSECONDS_PER_SECOND)
 
 
 @pytest.fixture
-def context(tmp_path: Path) -> Iterator[ApiContext]:
-    migrate(sqlite_url(tmp_path))
-    engine = connect(sqlite_url(tmp_path))
-    yield ApiContext(
-        Settings(data_directory=tmp_path), Repository(engine), FolderStore(tmp_path / "recordings")
-    )
-    engine.dispose()
+def context(repository: Repository, store: RecordingStore, tmp_path: Path) -> ApiContext:
+    return ApiContext(Settings(data_directory=tmp_path), repository, store)
 
 
 @pytest.fixture

@@ -1,18 +1,14 @@
 """Attacks on the second factor, by somebody who has a password, a session, a token, or the database."""
 
 import time
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import httpx
-import pyotp
 import pytest
 from sqlalchemy import Engine, text
 
-from core.units import NANOSECONDS_PER_SECOND
 from service.access.logins import LoginRefusedError, begin_session, check_login
-from service.access.second_factors import STEP_S
 from service.configuration.access import AccessSettings
 from service.process.sealing import Seal, SealError
 from service.storage import Repository
@@ -21,19 +17,11 @@ from tests.attacks.login_service import (
     API,
     LOGIN,
     PASSWORD,
+    Clock,
     Serve,
     add_user,
     another,
-    database_url,
-    engine,
-    logs,
-    migrated_sqlite,
-    repository,
-    serve,
-    store,
 )
-
-__all__ = ["database_url", "engine", "logs", "migrated_sqlite", "repository", "serve", "store"]
 
 REQUIRED = {"second_factor_roles": ["OPERATOR", "SECADM"]}
 AGAIN = {"password": PASSWORD}
@@ -42,25 +30,7 @@ PROPOSE, CONFIRM = f"{ACCOUNT}/totp", f"{ACCOUNT}/totp/confirmation"
 CODES, REMOVE = f"{ACCOUNT}/recovery-codes", f"{ACCOUNT}/second-factor/removal"
 
 
-class Clock:
-    """The time of the service and of authenticator apps."""
-
-    def __init__(self) -> None:
-        self.now_ns = time.time_ns() // NANOSECONDS_PER_SECOND * NANOSECONDS_PER_SECOND
-
-    def next_step(self) -> None:
-        self.now_ns += STEP_S * NANOSECONDS_PER_SECOND
-
-    def code(self, secret: str, steps: int = 0) -> str:
-        return pyotp.TOTP(secret).at(self.now_ns // NANOSECONDS_PER_SECOND, counter_offset=steps)
-
-
-@pytest.fixture(autouse=True)
-def clock(monkeypatch: pytest.MonkeyPatch) -> Iterator[Clock]:
-    clock = Clock()
-    monkeypatch.setattr(time, "time_ns", lambda: clock.now_ns)
-    yield clock
-    monkeypatch.undo()  # before the service ends
+pytestmark = pytest.mark.usefixtures("clock")
 
 
 def set_up(browser: httpx.Client, clock: Clock) -> tuple[str, list[str]]:

@@ -36,9 +36,6 @@ from testing.service.accounts import TESTS, token_of
 from testing.service.identity_provider import IdentityProvider, identity_provider
 from tests.service.api.access.test_sign_on import ANNA, back, settings_with
 from tests.service.api.serving import LONGEST_S, serving
-from tests.service.fixtures import database_url, engine, migrated_sqlite, repository, store
-
-__all__ = ["database_url", "engine", "migrated_sqlite", "repository", "store"]
 
 API = "/api/v1"
 OWN = f"{API}/account/tokens"

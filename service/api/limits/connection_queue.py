@@ -1,133 +1,121 @@
-"""Connections that came and are yet to be served, with requests for /healthz in front.
-
-The system keeps new connections in the order in which they came. In a crowd of thousands a request for
-/healthz would wait until all before it are served. Here they are all accepted at once, which takes some
-microseconds each, and a few are served in each turn of the event loop.
-"""
+"""Connections that came and are yet to be served: they wait in the process that accepts them."""
 
 import asyncio
-import errno
+import os
 import socket
-from collections import deque
+import subprocess
+import sys
 from collections.abc import Callable, Coroutine
+from pathlib import Path
 
+import structlog
+from structlog.typing import FilteringBoundLogger
+
+from service.process.acceptor import HANDED, HANDED_AT_ONCE, REFUSED
 from service.process.tally import Tally
 
-ACCEPTED_AT_ONCE = 256
-"""Connections between two looks at anything else."""
+log: FilteringBoundLogger = structlog.get_logger(__name__)
 
-SERVED_AT_ONCE = 4
-"""So few that who is served in a turn, and asks for little, is answered some milliseconds later."""
+PROGRAM = "import sys; sys.path.append(sys.argv.pop(1)); from service.process.acceptor import main; main()"
+PACKAGES = str(Path(__file__).parents[3])
+VARIABLES = ("LD_LIBRARY_PATH", "SYSTEMROOT")
+"""All that the interpreter may need of the environment. Secrets that are there stay with the service."""
 
-LOOKED_AT_AT_ONCE = 256
-"""Clients that had sent nothing are looked at again, so many in a turn."""
-
-URGENT = (b"GET /healthz", b"HEAD /health")
-"""First octets of such requests, of one length."""
-
-PAUSE_S = 1.0
-"""Where this process may open nothing more."""
-
-OUT_OF_RESOURCES = {errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM}
-GONE = {errno.ECONNABORTED, errno.EPROTO, errno.EPERM, errno.ETIMEDOUT}
-"""The client has given up, or a filter refused it."""
+AGAIN_S = 1.0
+END_LIMIT_S = 5.0
 
 Serve = Callable[[socket.socket], Coroutine[None, None, None]]
 
 
 class ConnectionQueue:
-    """Accepts the connections of one listening socket, in the running event loop, until it is closed.
+    """Serves the connections of one listening socket, in the running event loop, until it is closed.
 
     serve: makes a connection one of the server's. most: those that wait at a time; others wait in the system.
+    health: the answer to requests for /healthz without its date, given while `sign_of_life` is called.
     """
 
-    def __init__(self, listener: socket.socket, serve: Serve, *, most: int, tally: Tally) -> None:
+    def __init__(
+        self, listener: socket.socket, serve: Serve, *, most: int, tally: Tally, health: bytes
+    ) -> None:
         self._loop = asyncio.get_running_loop()
         self._listener = listener
         self._serve = serve
         self._most = most
         self._tally = tally
-        self._urgent: deque[socket.socket] = deque()
-        self._waiting: deque[socket.socket] = deque()
-        self._silent: deque[socket.socket] = deque()
+        self._health = health
         self._serving: set[asyncio.Task[None]] = set()
-        self._is_scheduled = False
         self._is_open = True
-        listener.setblocking(False)  # noqa: FBT003 - the standard library's
-        self._loop.add_reader(listener, self._accept)
+        self._start()
 
     def close(self) -> None:
         """Accept no more, and close the connections that wait."""
         self._is_open = False
-        self._loop.remove_reader(self._listener)
-        for connection in (*self._urgent, *self._waiting, *self._silent):
-            connection.close()
+        self._end()
 
-    def _number(self) -> int:
-        return len(self._urgent) + len(self._waiting) + len(self._silent)
+    def sign_of_life(self) -> None:
+        """Show that the event loop goes on."""
+        try:
+            self._acceptor_socket.send(HANDED)
+        except OSError:
+            return  # it has much to read, or has ended, which is seen elsewhere
 
-    def _accept(self) -> None:
-        for _ in range(ACCEPTED_AT_ONCE):
-            if self._number() >= self._most:
-                self._loop.remove_reader(self._listener)  # until some are served
-                break
-            try:
-                connection, _address = self._listener.accept()
-            except (BlockingIOError, InterruptedError):
-                break
-            except OSError as error:
-                if error.errno in GONE:
-                    continue
-                if error.errno not in OUT_OF_RESOURCES:
-                    raise
-                self._tally.add("not_accepted")
-                self._loop.remove_reader(self._listener)
-                self._loop.call_later(PAUSE_S, self._go_on)
-                break
-            connection.setblocking(False)  # noqa: FBT003 - the standard library's
-            self._put(connection)
-        self._schedule()
+    def _start(self) -> None:
+        self._acceptor_socket, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        with other:
+            # Few are on their way here. The others wait there.
+            other.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 1)
+            self._acceptor = subprocess.Popen(  # noqa: S603 - this interpreter, and nothing that a client says
+                [
+                    sys.executable,
+                    *("-I", "-S", "-B", "-c", PROGRAM, PACKAGES),
+                    *(str(each) for each in (self._listener.fileno(), other.fileno(), self._most)),
+                ],
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+                env={name: os.environ[name] for name in VARIABLES if name in os.environ},
+                pass_fds=(self._listener.fileno(), other.fileno()),
+            )
+        self._acceptor_socket.setblocking(False)  # noqa: FBT003 - the standard library's
+        if self._health:
+            self._acceptor_socket.send(self._health)
+        self._loop.add_reader(self._acceptor_socket, self._take)
 
-    def _go_on(self) -> None:
-        if self._is_open:
-            self._loop.add_reader(self._listener, self._accept)
+    def _end(self) -> None:
+        self._loop.remove_reader(self._acceptor_socket)
+        self._acceptor_socket.close()
+        try:
+            self._acceptor.wait(END_LIMIT_S)
+        except subprocess.TimeoutExpired:
+            self._acceptor.kill()
+            self._acceptor.wait()
 
-    def _put(self, connection: socket.socket) -> None:
-        first = _first_bytes(connection)
-        if first is None:
-            self._silent.append(connection)
-        else:
-            (self._urgent if first in URGENT else self._waiting).append(connection)
-
-    def _schedule(self) -> None:
-        if self._number() and not self._is_scheduled:
-            self._is_scheduled = True
-            self._loop.call_soon(self._serve_some)
-
-    def _serve_some(self) -> None:
-        self._is_scheduled = False
-        if not self._is_open:
+    def _take(self) -> None:
+        """Serve a few in this turn of the event loop."""
+        try:
+            message, descriptors, _, _ = socket.recv_fds(
+                self._acceptor_socket, HANDED_AT_ONCE, HANDED_AT_ONCE
+            )
+        except (BlockingIOError, InterruptedError):
             return
-        was_full = self._number() >= self._most
-        for _ in range(min(LOOKED_AT_AT_ONCE, len(self._silent))):
-            self._put(self._silent.popleft())
-        for _ in range(SERVED_AT_ONCE):
-            queue = self._urgent or self._waiting or self._silent
-            if not queue:
-                break
-            task = self._loop.create_task(self._serve(queue.popleft()))
+        except ConnectionResetError:
+            message, descriptors = b"", []
+        if not message:
+            self._go_on_with_another()
+        for _ in range(message.count(REFUSED) + message.count(HANDED) - len(descriptors)):
+            self._tally.add("not_accepted")
+        for descriptor in descriptors:
+            connection = socket.socket(fileno=descriptor)
+            connection.setblocking(False)  # noqa: FBT003 - the standard library's
+            task = self._loop.create_task(self._serve(connection))
             self._serving.add(task)
             task.add_done_callback(self._serving.discard)
-        if was_full:
-            self._go_on()
-        self._schedule()
 
+    def _go_on_with_another(self) -> None:
+        """Start the process that accepts again, a little later: it has ended, which it never should."""
+        self._end()
+        log.error("the process that accepts connections ended", exit_code=self._acceptor.returncode)
+        self._loop.call_later(AGAIN_S, self._start_again)
 
-def _first_bytes(connection: socket.socket) -> bytes | None:
-    """Return what a client has sent first, and leave it to be read; None where it has sent nothing."""
-    try:
-        return connection.recv(len(URGENT[0]), socket.MSG_PEEK)
-    except (BlockingIOError, InterruptedError):
-        return None
-    except OSError:
-        return b""  # it is gone, as whoever serves it will see
+    def _start_again(self) -> None:
+        if self._is_open:
+            self._start()

@@ -9,7 +9,10 @@ from service.configuration.relay_access import AbsolutePath
 
 
 class Iec104Tls(BaseModel):
-    """Files for TLS (IEC 62351-3). pinned: certificates of the clients that may connect."""
+    """Files for TLS (IEC 62351-3).
+
+    pinned: certificates of the clients that may connect.  crl: those that are revoked, by an authority in ca.
+    """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -17,6 +20,7 @@ class Iec104Tls(BaseModel):
     key: AbsolutePath
     ca: AbsolutePath
     pinned: tuple[AbsolutePath, ...] = Field(min_length=1)
+    crl: AbsolutePath | None = None
 
 
 class Iec104Settings(BaseModel):

@@ -8,7 +8,7 @@ from typing import Final, Self
 from cryptography import x509
 from cryptography.hazmat.primitives.serialization import Encoding
 
-from mms import CredentialFileError, read_secret
+from mms import CredentialFileError, read_secret, without_revoked
 from service.configuration.gateways.iec104 import Iec104Tls
 
 HANDSHAKE_S: Final = 5.0
@@ -37,17 +37,18 @@ class Security:
             context.load_cert_chain(named, tls.key)
             named = tls.ca
             context.load_verify_locations(named)
-            pinned = set()
+            pinned = []
             for named in tls.pinned:
                 octets = named.read_bytes()
                 is_text = octets.lstrip().startswith(b"-----BEGIN")
                 load = x509.load_pem_x509_certificate if is_text else x509.load_der_x509_certificate
-                pinned.add(load(octets).public_bytes(Encoding.DER))
+                pinned.append(load(octets))
+            allowed = without_revoked(pinned, tls.crl, tls.ca)
         except CredentialFileError as error:
             raise TlsFileError(f"gateways.iec104.tls: {error}") from error
         except (OSError, ValueError) as error:  # that of TLS is one of the system, too
             raise TlsFileError(f"gateways.iec104.tls: {named}: {error}") from error
-        return cls(context, frozenset(pinned))
+        return cls(context, frozenset(each.public_bytes(Encoding.DER) for each in allowed))
 
     async def secured(
         self, transport: asyncio.Transport, protocol: asyncio.Protocol

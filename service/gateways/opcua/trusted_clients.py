@@ -1,4 +1,7 @@
-"""The clients that may connect: their certificates, or their authorities', are in the folder `trusted`."""
+"""The clients that may connect: their certificates, or their authorities', are in the folder `trusted`.
+
+Lists of revoked certificates (CRL) of these authorities lie there, too.
+"""
 
 from pathlib import Path
 from typing import Final
@@ -8,9 +11,12 @@ from asyncua.crypto.truststore import TrustStore
 from cryptography import x509
 from cryptography.x509.verification import Store
 
+from mms import is_revoked, is_signed_by, parse_revocation_lists
+
 log = structlog.get_logger(__name__)
 
 CERTIFICATES: Final = (".der", ".pem", ".crt", ".cer")
+REVOCATION_LISTS: Final = (".crl",)
 
 UNREADABLE: Final = (
     ValueError,
@@ -32,12 +38,13 @@ class TrustedClients(TrustStore):  # type: ignore[misc]  # asyncua has no types
         super().__init__([folder], [])
         self._problem: str | None = None
         self._folder = folder
+        self._revocation_lists: list[x509.CertificateRevocationList] = []
         self._seen: tuple[dict[Path, Stamp], list[str]] | None = None
 
     def is_trusted(self, certificate: x509.Certificate) -> bool:
         """Tell whether a client with this certificate may connect."""
         self._refresh()
-        return bool(super().is_trusted(certificate))
+        return bool(super().is_trusted(certificate)) and not is_revoked(certificate, self._revocation_lists)
 
     def problem(self) -> str | None:
         """Return why a file, or the folder, cannot be used; None while all can. The other files count."""
@@ -51,11 +58,23 @@ class TrustedClients(TrustStore):  # type: ignore[misc]  # asyncua has no types
             return
         self._seen = (stamps, list(troubles))
         found: list[x509.Certificate] = []
+        lists: list[tuple[Path, x509.CertificateRevocationList]] = []
         for path in stamps:
             try:
-                found += _certificates(path.read_bytes())
+                content = path.read_bytes()
+                if path.suffix.lower() in REVOCATION_LISTS:
+                    lists += [(path, each) for each in parse_revocation_lists(content)]
+                else:
+                    found += _certificates(content)
             except (OSError, ValueError, x509.InvalidVersion) as error:
-                troubles.append(f"{path}: no certificate in DER or PEM can be read from it: {error}")
+                troubles.append(f"{path}: no certificate or list in DER or PEM can be read from it: {error}")
+        signed = [(path, each, is_signed_by(each, found)) for path, each in lists]
+        troubles += [
+            f"{path}: none of the certificates here has signed it"
+            for path, _, is_ours in signed
+            if not is_ours
+        ]
+        self._revocation_lists = [each for _, each, is_ours in signed if is_ours]
         self._trust_store = Store(found) if found else None
         self._problem = f"clients are not let in: {'; '.join(troubles)}" if troubles else None
         log.info("OPC UA clients that are trusted", folder=str(self._folder), certificates=len(found))
@@ -65,7 +84,11 @@ class TrustedClients(TrustStore):  # type: ignore[misc]  # asyncua has no types
         stamps: dict[Path, Stamp] = {}
         troubles: list[str] = []
         try:
-            names = sorted(path for path in self._folder.iterdir() if path.suffix.lower() in CERTIFICATES)
+            names = sorted(
+                path
+                for path in self._folder.iterdir()
+                if path.suffix.lower() in (*CERTIFICATES, *REVOCATION_LISTS)
+            )
         except OSError as error:
             return stamps, [f"{self._folder}: {error.strerror}"]
         for path in names:

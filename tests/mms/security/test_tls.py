@@ -17,6 +17,7 @@ from mms import (
     CertificateRefused,
     Client,
     ConnectFailed,
+    CredentialFileError,
     FunctionalConstraint,
     RelayNotTrusted,
     Report,
@@ -31,7 +32,7 @@ from mms.security import credential_files
 from mms.security.credential_files import describe_certificate
 from mms.security.tls import TlsContext, unverified_context
 from testing.ports import LOOPBACK
-from testing.relays.certificates import identity
+from testing.relays.certificates import identity, revocation_list
 from testing.relays.pki import Pki
 from testing.relays.serving import RelayProcess, mute_server, start_relay
 from testing.waiting import eventually
@@ -159,6 +160,41 @@ def test_a_relay_with_another_certificate_is_not_trusted(pki: Pki, relay: Server
     with pytest.raises(RelayNotTrusted, match="none of the pinned ones") as refusal:
         connect(relay, tls)
     assert describe_certificate(pki.client.certificate) in str(refusal.value), "what was expected"
+
+
+def test_a_relay_whose_certificate_is_revoked_is_not_trusted(pki: Pki, relay: Server, tmp_path: Path) -> None:
+    tls = replace(pki.of_client(), crl=tmp_path / "revoked.crl")
+    (tmp_path / "revoked.crl").write_bytes(revocation_list(pki.authority, pki.client))
+    with connect(relay, tls) as client:
+        assert reads(client), "another is revoked"
+    (tmp_path / "revoked.crl").write_bytes(revocation_list(pki.authority, pki.relay))
+    with pytest.raises(CredentialFileError, match="all of them are revoked"):
+        connect(relay, tls)
+
+
+def test_a_client_whose_certificate_is_revoked_is_refused(pki: Pki, tmp_path: Path) -> None:
+    stolen = pki.signed("stolen-client", -A_DAY, A_DAY)
+    crl = tmp_path / "revoked.crl"
+    crl.write_bytes(revocation_list(pki.authority, stolen))
+    of_relay = pki.of_relay()
+    of_relay = replace(of_relay, pinned=(*of_relay.pinned, stolen.certificate_file), crl=crl)
+    with start_relay(tls=of_relay) as relay:
+        with pytest.raises(CertificateRefused):
+            connect(relay, pki.of(stolen))
+        with connect(relay, pki.of_client()) as client:
+            assert reads(client)
+
+
+@pytest.mark.parametrize("content", [b"", b"nonsense", b"-----BEGIN CERTIFICATE-----\nnone\n", None])
+def test_a_list_that_cannot_be_used_lets_nobody_in(
+    pki: Pki, relay: Server, tmp_path: Path, content: bytes | None
+) -> None:
+    """None: made by an authority that is not the plant's."""
+    alien = identity(tmp_path, "alien-authority", authority=True)
+    crl = tmp_path / "revoked.crl"
+    crl.write_bytes(revocation_list(alien) if content is None else content)
+    with pytest.raises(CredentialFileError, match=r"revoked\.crl"):
+        connect(relay, replace(pki.of_client(), crl=crl))
 
 
 def test_a_relay_of_an_unknown_authority_is_not_trusted(pki: Pki, relay: Server) -> None:

@@ -15,7 +15,7 @@ from service.configuration.gateways.iec104 import Iec104Settings
 from service.configuration.settings import Settings
 from service.storage import Repository
 from testing.ports import LOOPBACK
-from testing.relays.certificates import Identity
+from testing.relays.certificates import Identity, revocation_list
 from testing.relays.pki import Pki
 from testing.service.conditions import FAULT, tell
 from testing.service.gateways import running_gateways, started_gateways
@@ -84,6 +84,20 @@ def test_a_stranger_is_told_nothing(repository: Repository, tmp_path: Path, pki:
             pytest.fail(f"{who}: the client was told {told}")
         assert fault(port_of(chosen), pki, pki.client) == 1
         assert gateways.status()[0].restarts == 0
+
+
+def test_a_client_whose_certificate_is_revoked_is_told_nothing(
+    repository: Repository, tmp_path: Path, pki: Pki
+) -> None:
+    stolen = pki.signed("stolen", -A_DAY, A_DAY)
+    crl = tmp_path / "revoked.pem"
+    crl.write_bytes(revocation_list(pki.authority, stolen))
+    tell(repository, FAULT)
+    chosen = settings_of("iec104", tmp_path, tls={**files_of(pki, stolen), "crl": crl})
+    with running_gateways(chosen):
+        with pytest.raises((ssl.SSLError, ConnectionError)):
+            fault(port_of(chosen), pki, stolen)
+        assert fault(port_of(chosen), pki, pki.client) == 1
 
 
 def test_a_client_that_speaks_in_clear_is_told_nothing(pki: Pki, secured: int) -> None:

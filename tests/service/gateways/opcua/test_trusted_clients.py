@@ -9,7 +9,7 @@ from cryptography.hazmat.primitives import serialization
 from service.gateways.opcua.certificate import own_certificate
 from service.gateways.opcua.trusted_clients import TrustedClients, application_uris
 from testing.ports import LOOPBACK
-from testing.relays.certificates import Identity, identity
+from testing.relays.certificates import Identity, identity, revocation_list
 
 VERSION_3 = b"\xa0\x03\x02\x01\x02"
 VERSION_6 = b"\xa0\x03\x02\x01\x05"
@@ -70,6 +70,22 @@ def test_several_certificates_may_be_in_one_file(folder: Path, tmp_path: Path, c
     trusted = TrustedClients(folder)
     assert all(trusted.is_trusted(one.certificate) for one in (client, other))
     assert isinstance(other.certificate, x509.Certificate)
+
+
+def test_who_is_on_a_list_of_the_authority_is_let_in_no_more(folder: Path, tmp_path: Path) -> None:
+    plant, alien = (identity(tmp_path, name, authority=True) for name in ("plant", "alien"))
+    stolen, good = (identity(tmp_path, name, issuer=plant) for name in ("stolen", "good"))
+    for one in (plant, stolen, good):
+        (folder / f"{one.certificate_file.name}").write_bytes(der(one))
+    trusted = TrustedClients(folder)
+    assert trusted.is_trusted(stolen.certificate)
+    (folder / "forged.crl").write_bytes(revocation_list(alien, good))
+    (folder / "plant.crl").write_bytes(revocation_list(plant, stolen))
+    assert not trusted.is_trusted(stolen.certificate)
+    assert trusted.is_trusted(good.certificate)
+    told = trusted.problem() or ""
+    assert "forged.crl: none of the certificates here has signed it" in told
+    assert "plant.crl" not in told
 
 
 @pytest.mark.parametrize(
