@@ -27,8 +27,8 @@ LARGEST: Final = 0.8
 """Change at which a fit begins, at most."""
 SMALL: Final = 0.02
 """Change that is asked about, over the rated torque."""
-LEAST_LEFT: Final = 0.2
-"""Share of the squared residuals that a change must explain to be tried."""
+LEAST_LEFT: Final = 0.05
+"""Share of the squared residuals that a change must explain: little where noise is most of them."""
 LEAST_CHANGE: Final = 0.02
 """A smaller change, over the rated torque, is not told."""
 LIKELY_LOAD: Final = 1.5
