@@ -47,14 +47,26 @@ _NAME = re.compile(
     r"(?:[-_]?[NGEnge])?"  # against neutral or ground
     r"(?![A-Za-z0-9])"
 )
-_CURRENT_WORD = r"(?:currents?|strom|courant|corriente|corrente)"
-_VOLTAGE_WORD = r"(?:voltages?|spannung|tension|tensi[oó]n|tens[aã]o)"
+_CURRENT_WORD = r"(?:currents?|amps?|amperes?|strom|courant|corriente|corrente)"
+_VOLTAGE_WORD = r"(?:voltages?|volts?|spannung|tension|tensi[oó]n|tens[aã]o)"
 _ONE_PHASE = r"(?:[A-CR-WY]|L?[1-3])"
+_PHASE_WORD = r"(?:phase|ph)"
+_PHASE_BEFORE = (
+    rf"(?i)(?<![A-Za-z0-9])(?:{_PHASE_WORD}[ _-]*(?P<p>{_ONE_PHASE})|(?P<q>{_ONE_PHASE})[ _-]*{_PHASE_WORD}"
+    rf"|(?:^(?P<r>{_ONE_PHASE})|(?P<s>L[1-3])))[ _-]+"
+)
 _PLAIN = (
-    (re.compile(rf"(?i)\b(?:phase|ph)[ _-]*({_ONE_PHASE})[ _-]+{_CURRENT_WORD}\b"), r"I\1"),
-    (re.compile(rf"(?i)\b(?:phase|ph)[ _-]*({_ONE_PHASE})[ _-]+{_VOLTAGE_WORD}\b"), r"V\1"),
+    (re.compile(r"(?i)(?<![A-Za-z])red(?![A-Za-z])"), "R"),
+    (re.compile(r"(?i)(?<![A-Za-z])yellow(?![A-Za-z])"), "Y"),
+    (re.compile(r"(?i)(?<![A-Za-z])blue(?![A-Za-z])"), "B"),
+    (re.compile(rf"{_PHASE_BEFORE}{_CURRENT_WORD}(?![A-Za-z])"), r"I\g<p>\g<q>\g<r>\g<s>"),
+    (re.compile(rf"{_PHASE_BEFORE}{_VOLTAGE_WORD}(?![A-Za-z])"), r"V\g<p>\g<q>\g<r>\g<s>"),
     (re.compile(rf"(?i)\b{_CURRENT_WORD}(?![A-Za-z]{{2}})"), "I"),
     (re.compile(rf"(?i)\b{_VOLTAGE_WORD}(?![A-Za-z]{{2}})"), "V"),
+    (re.compile(rf"(?<![A-Za-z0-9])CT(?=[ _-]+{_ONE_PHASE}(?![A-Za-z0-9]))"), "I"),
+    (re.compile(rf"(?<![A-Za-z0-9])[VP]T(?=[ _-]+{_ONE_PHASE}(?![A-Za-z0-9]))"), "V"),
+    (re.compile(rf"(?<![A-Za-z0-9])([IUViuv])ph[ _]?(?={_ONE_PHASE}(?![A-Za-z0-9]))"), r"\1"),
+    (re.compile(r"(?<![A-Za-z0-9])([IUV])[ _-]+(?=[UVW][UVWNGE](?![A-Za-z0-9]))"), r"\1"),
     (re.compile(rf"(?i)[ _(-]*\b(?:phase|ph)[ _-]*(?={_ONE_PHASE}\b)"), " "),
     (re.compile(rf"(?<![A-Za-z0-9])([IUV]) *\((?={_ONE_PHASE}-(?:{_ONE_PHASE}|[NGE])\))"), r"\1"),
     (re.compile(r"(?<![A-Za-z0-9])([IUV])[ _-]+(?=(?:[A-CR-TYabc]|L?[1-3])[^ ])"), r"\1"),

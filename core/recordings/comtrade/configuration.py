@@ -212,7 +212,7 @@ def parse_configuration(
     )
     if edition is None and revision == 1999 and lines.ahead():
         revision = 2013  # nothing else has lines behind the time multiplier
-    has_time_code = revision >= 2013 and bool(lines.ahead())
+    has_time_code = (revision >= 2013 and bool(lines.ahead())) or (start.is_utc and trigger.is_utc)
     ahead_ns = utc_offset_ns(lines, repairs) if revision >= 2013 else 0
     for line in lines.remaining():
         if any(line.fields):

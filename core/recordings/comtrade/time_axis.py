@@ -176,7 +176,7 @@ class _Nominal:
 def _shown(
     path: Path, stamps: NDArray[np.float64], nominal: _Nominal, unit_s: float
 ) -> tuple[NDArray[np.float64] | None, int | None]:
-    """Return the times with the gaps that the stamps show, None without any, and the span of their counter."""
+    """Return the times with the gaps that stamps show, None without any, and the span of their counter."""
     span = _counter_span(stamps, 2.0 * nominal.periods.max() / unit_s)
     return _with_gaps(path, stamps, nominal, unit_s, span), span
 
@@ -189,7 +189,7 @@ def _otherwise(
     fault: RecordingError,
     repairs: Repairs,
 ) -> NDArray[np.float64] | None:
-    """Return the times of stamps that contradict the rates: in microseconds, or where the recorder began again.
+    """Return the times of stamps that contradict the rates: as microseconds, or begun again beside gaps.
 
     Editions before 2013 know only microseconds: some recorders write more decimals of a second in their dates
     all the same. Where microseconds are just what the rates give, that is the only way to read the stamps.
