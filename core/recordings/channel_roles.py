@@ -7,6 +7,7 @@ other, or whose phase cannot be told, keeps phase None: the motor's file can sti
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 from core.recordings.waveform import REVERSED_LINES, Quantity
 
@@ -74,6 +75,10 @@ _PLAIN = (
 )
 """Words for I and V, and what people write between them and the phase: "Current phase A" is "IA"."""
 _AGAINST_EARTH = re.compile(r"(L[1-3]|[A-Z])[NGE]")
+
+
+MOST_REMEMBERED = 4096
+"""Channels whose words are not looked at again."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,7 +166,9 @@ class _Seen:
     terminal: str = ""
 
     @classmethod
+    @lru_cache(maxsize=MOST_REMEMBERED)
     def of(cls, name: str, phase_field: str, unit: str) -> "_Seen":
+        """Return what a channel says; remembered, as all records of a relay have the same channels."""
         word = _UNIT_WORD.fullmatch(unit.strip())
         si_unit, scale = _SI_UNITS.get(word["prefix"] + word["letter"].upper() if word else unit, (unit, 1.0))
         match = _NAME.search(_plain(name).translate(_CYRILLIC_PHASES))

@@ -80,16 +80,15 @@ def record_times(start: Line, trigger: Line, revision: int, repairs: Repairs) ->
         If a line holds no date and time between 1970 and 2200, and the reader is strict.
     """
     orders = (MONTH_FIRST, DAY_FIRST) if revision == 1991 else (DAY_FIRST, MONTH_FIRST)
-    lines = (start, trigger)
-    fitting = [order for order in orders if all(_is_date(line, order) for line in lines)]
-    order = fitting[0] if fitting else orders[0]
-    first, second = (_moment(line, order, revision, repairs) for line in lines)
+    dates = [(line, _as_written(line)) for line in (start, trigger)]
+    fitting = (order for order in orders if all(_is_date(*one, order) for one in dates))
+    order = next(fitting, orders[0])
+    first, second = (_moment(*one, order, revision, repairs) for one in dates)
     return first, second
 
 
-def _is_date(line: Line, order: str) -> bool:
+def _is_date(line: Line, written: re.Match[str] | None, order: str) -> bool:
     """Whether the line is a date in this order; one in no form at all speaks against neither."""
-    written = _as_written(line)
     return written is None or isinstance(_of_calendar(line, written, order), datetime)
 
 
@@ -98,9 +97,8 @@ def _as_written(line: Line) -> re.Match[str] | None:
     return _WRITTEN.fullmatch(line.joined.replace('"', ""))
 
 
-def _moment(line: Line, order: str, revision: int, repairs: Repairs) -> Moment:
+def _moment(line: Line, written: re.Match[str] | None, order: str, revision: int, repairs: Repairs) -> Moment:
     form = f"{'mm/dd/yy' if revision == 1991 else 'dd/mm/yyyy'},hh:mm:ss.ssssss"
-    written = _as_written(line)
     if written is None or (written["utc"] and revision >= 2013):  # 2013 has a line of its own for that
         fault = line.refuse("", form, line.quoted())
         repairs.mend(fault, UNKNOWN)
