@@ -1,7 +1,7 @@
 """Reading speed beside that of an earlier commit: python -m benchmarks.recordings.beside_commit COMMIT [CSV].
 
-Both read the same files, in processes that take turns. The time is the processor's: what else the machine does
-counts little, and of each file the shortest of all turns is taken.
+Both read the same files, in processes that take turns. The time is the processor's: what else the machine
+does counts little, and of each file the shortest of all turns is taken.
 """
 
 import argparse
