@@ -119,7 +119,8 @@ def steps(pool: Executor, *, quick: bool) -> list[Section]:
         for one in spread(tried, cases, "steps of the load", pool)
     ]
     lines = [
-        "A 1.5 kW motor with R_s = 6.1 and R_r = 3.152 ohm, 20 % of its rated torque before the step; noise of 46 dB.",
+        "A 1.5 kW motor with R_s = 6.1 and R_r = 3.152 ohm, 20 % of its rated torque before the step;",
+        "noise of 46 dB.",
         "",
         *table(header, rows),
     ]

@@ -174,7 +174,7 @@ def of_issue() -> list[Case]:
 
 
 def of_steps() -> list[Case]:
-    """A motor of 6.1 and 3.152 ohm, whose load steps in early, half-way or late, in records of 1 and of 3 s."""
+    """A motor of 6.1 and 3.152 ohm, whose load steps in early, half-way or late, in records of 1 and 3 s."""
     steps = (
         (1.0, 0.3, 0.2), (1.0, 0.3, 0.5), (1.0, 0.3, 0.8), (1.0, 0.8, 0.5),
         (3.0, 0.3, 0.3), (3.0, 0.3, 2.0), (3.0, 0.8, 1.0),
