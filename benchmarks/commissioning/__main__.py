@@ -27,8 +27,10 @@ error of the model's speed at 0.3, 0.6 and 1.0 of rated torque.
 rated current counts as saturated there. A start of 3 s was to take 5 s: a second of a 7.5 kW motor takes
 that, 2.5 s of a 160 kW motor ten to 24. Five hundred motors were to be drawn, not 96.
 Of 16 loads that step in, two are not told and one only as unexplained: deep bars take up a small step.
-A start under a load that changes takes about ten times as long; seconds of the loads were counted on a
-machine that did other work.
+These 48 starts were measured before smaller changes of the load were looked for; since then the 16 under a
+constant load again had no change told, and of the first nine under a step one had not.
+A start under a load that changes takes about ten times as long; all seconds of changing loads were counted
+on a machine that did other work.
 """
 SYMBOLS = ("R_s", "R_r", "L_ls", "L_s", "J")
 FEW, SOME, MANY = 4, 16, 96
