@@ -148,8 +148,8 @@ class Classification:
         Returns
         -------
         dict of str to object
-            The answer; its keys are a contract. Without evidence, or where nothing is seen and nothing known of
-            the winding, it names no cause, with probability 0.
+            The answer; its keys are a contract. Without evidence, or where nothing is seen and nothing is
+            known of the winding, it names no cause, with probability 0.
         """
         assessed = self.is_assessed
         answered = assessed and self.words != NOTHING_SEEN

@@ -16,10 +16,10 @@ import numpy as np
 from core.commissioning.errors import DivergenceError
 from core.commissioning.fit import COARSELY, Fit, Records, every
 from core.commissioning.load_change import (
-    LEAST_LEFT,
     are_possible,
     beginnings,
     is_seen,
+    least_explained,
     with_load_changes,
 )
 from core.commissioning.prior import Prior
@@ -133,7 +133,8 @@ def _with_load_changes(plain: "Fits", fits: "Fits", found: Chosen, laws: Sequenc
             continue
         chosen = _chosen(changing, laws)
         before = found if best is None else best
-        if _is_better(changing[chosen.law][0], chosen.fit, before.fit, most_left=1.0 - LEAST_LEFT):
+        records = changing[chosen.law][0]
+        if _is_better(records, chosen.fit, before.fit, most_left=1.0 - least_explained(records)):
             best = chosen
     return None if best is None else replace(best, steadily=found)
 
