@@ -9,6 +9,7 @@ from math import exp, log, sqrt
 
 import numpy as np
 
+from benchmarks.winding.others import EQUATION_MOTOR
 from core.commissioning.commissioning import commission
 from core.commissioning.errors import CommissioningError
 from core.commissioning.prior import PARAMETERS
@@ -44,6 +45,8 @@ RUNNING_LOADS = (0.3, 0.6, 1.0)
 RATE_HZ = 5_000.0
 STEP_S = 0.001
 """Time in which a load steps in."""
+STEPPED_FROM = 0.2
+"""Load over the rated torque before it does."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,6 +171,21 @@ def of_issue() -> list[Case]:
             power = f"{motor.nameplate.rated_power_W / 1e3:g} kW"
             cases.append(Case(f"{power}, {ratio:g} at standstill", motor, bars, saturating, 0.5, seconds))
     return cases
+
+
+def of_steps() -> list[Case]:
+    """A motor of 6.1 and 3.152 ohm, whose load steps in early, half-way or late, in records of 1 and 3 s."""
+    steps = (
+        (1.0, 0.3, 0.2), (1.0, 0.3, 0.5), (1.0, 0.3, 0.8), (1.0, 0.8, 0.5),
+        (3.0, 0.3, 0.3), (3.0, 0.3, 2.0), (3.0, 0.8, 1.0),
+    )  # fmt: skip
+    return [
+        Case(
+            f"{seconds:g} s, {change:.0%} at {at_s:g} s",
+            EQUATION_MOTOR, None, 0.0, STEPPED_FROM, seconds, seed=1, load_change=(change, at_s, STEP_S),
+        )
+        for seconds, change, at_s in steps
+    ]  # fmt: skip
 
 
 def _with_ratio_at_standstill(motor: Motor, ratio: float) -> DeepBars:

@@ -148,15 +148,17 @@ class Classification:
         Returns
         -------
         dict of str to object
-            The answer; its keys are a contract. Without evidence it names no cause, with probability 0.
+            The answer; its keys are a contract. Without evidence, or where nothing is seen and nothing is
+            known of the winding, it names no cause, with probability 0.
         """
         assessed = self.is_assessed
+        answered = assessed and self.words != NOTHING_SEEN
         likelihoods = [one for one in self.likelihoods if assessed or one.cause is not Cause.HEALTHY]
         explanations = self.explanations if assessed else ()
         return {
-            "answer": self.answer.names if assessed else [],
+            "answer": self.answer.names if answered else [],
             "is_told": self.is_told,
-            "probability": self.answer.probability if assessed else 0.0,
+            "probability": self.answer.probability if answered else 0.0,
             "words": self.words,
             "likelihoods": [one.as_dict() for one in likelihoods],
             "explanations": [{"causes": one.names, "probability": one.probability} for one in explanations],

@@ -27,8 +27,10 @@ LARGEST: Final = 0.8
 """Change at which a fit begins, at most."""
 SMALL: Final = 0.02
 """Change that is asked about, over the rated torque."""
-LEAST_LEFT: Final = 0.2
-"""Share of the squared residuals that a change must explain to be tried."""
+LEAST_LEFT: Final = 0.05
+"""Share of the squared residuals that a change must explain to be tried: little, as most of them is noise."""
+LEAST_OF_A_CHANGING_MOTOR: Final = 0.2
+"""The same of a motor with deep bars: errors of its model are left, too, of which a load may explain some."""
 LEAST_CHANGE: Final = 0.02
 """A smaller change, over the rated torque, is not told."""
 LIKELY_LOAD: Final = 1.5
@@ -57,10 +59,27 @@ def is_seen(records: Records, fit: Fit) -> bool:
     _, explained = _begun(records, fit, LENGTHS[0])
     energies = [float((start.measured_ab**2).sum()) for start in records.starts]
     left = [float((residual**2).sum()) for residual in fit.residuals]
+    least = least_explained(records)
     return any(
-        gain > max(LEAST_LEFT * error, LEAST_EXPLAINED**2 * energy)
+        gain > max(least * error, LEAST_EXPLAINED**2 * energy)
         for gain, error, energy in zip(explained, left, energies, strict=True)
     )
+
+
+def least_explained(records: Records) -> float:
+    """Return the share of the squared residuals that a change of the load must explain.
+
+    Parameters
+    ----------
+    records : Records
+        The starts.
+
+    Returns
+    -------
+    float
+        The share.
+    """
+    return LEAST_OF_A_CHANGING_MOTOR if records.coordinates.changes else LEAST_LEFT
 
 
 def beginnings(records: Records, fit: Fit) -> list[Array]:

@@ -15,7 +15,13 @@ import numpy as np
 
 from core.commissioning.errors import DivergenceError
 from core.commissioning.fit import COARSELY, Fit, Records, every
-from core.commissioning.load_change import are_possible, beginnings, is_seen, with_load_changes
+from core.commissioning.load_change import (
+    are_possible,
+    beginnings,
+    is_seen,
+    least_explained,
+    with_load_changes,
+)
 from core.commissioning.prior import Prior
 from core.commissioning.start import Start
 from core.commissioning.uncertainty import preference
@@ -127,7 +133,8 @@ def _with_load_changes(plain: "Fits", fits: "Fits", found: Chosen, laws: Sequenc
             continue
         chosen = _chosen(changing, laws)
         before = found if best is None else best
-        if _is_better(changing[chosen.law][0], chosen.fit, before.fit):
+        records = changing[chosen.law][0]
+        if _is_better(records, chosen.fit, before.fit, most_left=1.0 - least_explained(records)):
             best = chosen
     return None if best is None else replace(best, steadily=found)
 
@@ -153,12 +160,12 @@ def _fit(records: Records, vector: Array) -> Fit:
     return records.fit(vector, free, converged=ROUGHLY)
 
 
-def _is_better(records: Records, fit: Fit, plain: Fit) -> bool:
+def _is_better(records: Records, fit: Fit, plain: Fit, *, most_left: float = MOST_LEFT) -> bool:
     energy = sum(float((start.measured_ab**2).sum()) for start in records.starts)
     explained = plain.squared_error - fit.squared_error
     angle = max(2.0 * pi * start.frequency_hz / start.sample_rate_hz for start in records.starts)
     least = max(LEAST_EXPLAINED, OF_INTERPOLATION * angle**3)
-    if fit.squared_error > MOST_LEFT * plain.squared_error or explained < least**2 * energy:
+    if fit.squared_error > most_left * plain.squared_error or explained < least**2 * energy:
         return False
     return preference(records, fit, plain) > SIGNIFICANCE
 

@@ -7,6 +7,7 @@ other, or whose phase cannot be told, keeps phase None: the motor's file can sti
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 from core.recordings.waveform import REVERSED_LINES, Quantity
 
@@ -47,14 +48,26 @@ _NAME = re.compile(
     r"(?:[-_]?[NGEnge])?"  # against neutral or ground
     r"(?![A-Za-z0-9])"
 )
-_CURRENT_WORD = r"(?:currents?|strom|courant|corriente|corrente)"
-_VOLTAGE_WORD = r"(?:voltages?|spannung|tension|tensi[oó]n|tens[aã]o)"
+_CURRENT_WORD = r"(?:currents?|amps?|amperes?|strom|courant|corriente|corrente)"
+_VOLTAGE_WORD = r"(?:voltages?|volts?|spannung|tension|tensi[oó]n|tens[aã]o)"
 _ONE_PHASE = r"(?:[A-CR-WY]|L?[1-3])"
+_PHASE_WORD = r"(?:phase|ph)"
+_PHASE_BEFORE = (
+    rf"(?i)(?<![A-Za-z0-9])(?:{_PHASE_WORD}[ _-]*(?P<p>{_ONE_PHASE})|(?P<q>{_ONE_PHASE})[ _-]*{_PHASE_WORD}"
+    rf"|(?:^(?P<r>{_ONE_PHASE})|(?P<s>L[1-3])))[ _-]+"
+)
 _PLAIN = (
-    (re.compile(rf"(?i)\b(?:phase|ph)[ _-]*({_ONE_PHASE})[ _-]+{_CURRENT_WORD}\b"), r"I\1"),
-    (re.compile(rf"(?i)\b(?:phase|ph)[ _-]*({_ONE_PHASE})[ _-]+{_VOLTAGE_WORD}\b"), r"V\1"),
+    (re.compile(r"(?i)(?<![A-Za-z])red(?![A-Za-z])"), "R"),
+    (re.compile(r"(?i)(?<![A-Za-z])yellow(?![A-Za-z])"), "Y"),
+    (re.compile(r"(?i)(?<![A-Za-z])blue(?![A-Za-z])"), "B"),
+    (re.compile(rf"{_PHASE_BEFORE}{_CURRENT_WORD}(?![A-Za-z])"), r"I\g<p>\g<q>\g<r>\g<s>"),
+    (re.compile(rf"{_PHASE_BEFORE}{_VOLTAGE_WORD}(?![A-Za-z])"), r"V\g<p>\g<q>\g<r>\g<s>"),
     (re.compile(rf"(?i)\b{_CURRENT_WORD}(?![A-Za-z]{{2}})"), "I"),
     (re.compile(rf"(?i)\b{_VOLTAGE_WORD}(?![A-Za-z]{{2}})"), "V"),
+    (re.compile(rf"(?<![A-Za-z0-9])CT(?=[ _-]+{_ONE_PHASE}(?![A-Za-z0-9]))"), "I"),
+    (re.compile(rf"(?<![A-Za-z0-9])[VP]T(?=[ _-]+{_ONE_PHASE}(?![A-Za-z0-9]))"), "V"),
+    (re.compile(rf"(?<![A-Za-z0-9])([IUViuv])ph[ _]?(?={_ONE_PHASE}(?![A-Za-z0-9]))"), r"\1"),
+    (re.compile(r"(?<![A-Za-z0-9])([IUV])[ _-]+(?=[UVW][UVWNGE](?![A-Za-z0-9]))"), r"\1"),
     (re.compile(rf"(?i)[ _(-]*\b(?:phase|ph)[ _-]*(?={_ONE_PHASE}\b)"), " "),
     (re.compile(rf"(?<![A-Za-z0-9])([IUV]) *\((?={_ONE_PHASE}-(?:{_ONE_PHASE}|[NGE])\))"), r"\1"),
     (re.compile(r"(?<![A-Za-z0-9])([IUV])[ _-]+(?=(?:[A-CR-TYabc]|L?[1-3])[^ ])"), r"\1"),
@@ -62,6 +75,10 @@ _PLAIN = (
 )
 """Words for I and V, and what people write between them and the phase: "Current phase A" is "IA"."""
 _AGAINST_EARTH = re.compile(r"(L[1-3]|[A-Z])[NGE]")
+
+
+MOST_REMEMBERED = 4096
+"""Channels whose words are not looked at again."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,7 +166,9 @@ class _Seen:
     terminal: str = ""
 
     @classmethod
+    @lru_cache(maxsize=MOST_REMEMBERED)
     def of(cls, name: str, phase_field: str, unit: str) -> "_Seen":
+        """Return what a channel says; remembered, as all records of a relay have the same channels."""
         word = _UNIT_WORD.fullmatch(unit.strip())
         si_unit, scale = _SI_UNITS.get(word["prefix"] + word["letter"].upper() if word else unit, (unit, 1.0))
         match = _NAME.search(_plain(name).translate(_CYRILLIC_PHASES))

@@ -71,7 +71,8 @@ def decode_text(content: bytes) -> str:
 def wide_encoding(content: bytes) -> str | None:
     """Tell whether a text has two or four bytes a letter, as programs of Windows save it.
 
-    A byte order mark tells it, or zeros in every other byte and in no byte between.
+    A byte order mark tells it, or zeros in every other byte and in no byte between; names in letters of their
+    own may have others in up to half of those places.
 
     Parameters
     ----------
@@ -87,9 +88,10 @@ def wide_encoding(content: bytes) -> str | None:
         if content.startswith(mark):
             return encoding
     even, odd = content[:_NULLS_TOLD_BY:2], content[1:_NULLS_TOLD_BY:2]
-    if odd and not any(odd) and all(even):
-        return "utf-16-le"
-    return "utf-16-be" if odd and not any(even) and all(odd) else None
+    for zeros, letters, encoding in ((odd, even, "utf-16-le"), (even, odd, "utf-16-be")):
+        if odd and 2 * zeros.count(0) >= len(zeros) and all(letters):
+            return encoding
+    return None
 
 
 def _cyrillic_share(runs: list[bytes], page: str) -> float:

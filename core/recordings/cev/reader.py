@@ -46,6 +46,7 @@ _SETTINGS_BEGIN = re.compile(rb'\s*(?=")')
 _SETTINGS_END = re.compile(rb'", *"([0-9A-Fa-f]{4})"')
 _MOST_ENDS = 3
 """Places that are tried as the end of the settings; the text of a relay's has none inside."""
+_BEFORE_A_REPORT = b"\r\n\x02"
 _PROMPTS = b" \t\r\n\x02\x03\x1a=>"
 _NOMINAL = re.compile(r"\b(?:FNOM|NFREQ)\s*:?=\s*(50|60)\b")
 
@@ -172,8 +173,9 @@ def _extent(path: Path, content: bytes, report: int | None, repairs: Repairs) ->
         raise RecordingError(
             path, "line 1", expected='"FID" or "MONTH"', found=quoted(content[:60].decode("latin-1"))
         )
-    again = re.compile(rb"(?<=[\r\n\x02])" + re.escape(first[0]))
-    begins = [first.start(), *(match.start() for match in again.finditer(content, first.end()))]
+    again = re.compile(re.escape(first[0])).finditer(content, first.end())
+    behind = (match.start() for match in again if content[match.start() - 1] in _BEFORE_A_REPORT)
+    begins = [first.start(), *behind]
     if report is None and len(begins) > 1:
         repairs.warn(f"{path.name}: {len(begins)} event reports: the first is read")
     wanted = (report or 1) - 1

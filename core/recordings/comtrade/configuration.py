@@ -30,6 +30,9 @@ MOST_RATIO = 1e12
 MOST_NAMED = 12
 """Constant channels that are named; a recorder may have hundreds of spare inputs."""
 
+MICROSECOND_S, NANOSECOND_S = 1e-6, 1e-9
+"""What time stamps count: the latter in files whose dates have more than six decimals (2013, 7.4.9)."""
+
 _NUMBER = re.compile(r"[-+]?[0-9.]+([eE][-+]?[0-9]+)?", re.ASCII)
 _CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
 
@@ -103,8 +106,10 @@ class Configuration:
         Whether the file tells how far its times are ahead of UTC (2013, 7.4.11).
     data_format : str
         Format of the data file.
-    time_stamp_unit_s : float
-        Time that one step of the data file's time stamps stands for [s].
+    time_multiplier : float
+        Factor of the data file's time stamps.
+    time_base_s : float
+        What they count: microseconds or nanoseconds [s].
     """
 
     revision: int
@@ -119,7 +124,13 @@ class Configuration:
     trigger_time_ns: int | None
     has_time_code: bool
     data_format: str
-    time_stamp_unit_s: float
+    time_multiplier: float
+    time_base_s: float
+
+    @property
+    def time_stamp_unit_s(self) -> float:
+        """Time that one step of the data file's time stamps stands for [s]."""
+        return self.time_multiplier * self.time_base_s
 
     @property
     def layout(self) -> "Layout":
@@ -201,13 +212,11 @@ def parse_configuration(
     )
     if edition is None and revision == 1999 and lines.ahead():
         revision = 2013  # nothing else has lines behind the time multiplier
-    has_time_code = revision >= 2013 and bool(lines.ahead())
+    has_time_code = (revision >= 2013 and bool(lines.ahead())) or (start.is_utc and trigger.is_utc)
     ahead_ns = utc_offset_ns(lines, repairs) if revision >= 2013 else 0
     for line in lines.remaining():
         if any(line.fields):
             raise line.refuse("", f"nothing more in a file of revision {revision}", line.quoted())
-    # 2013, 7.4.9: nanoseconds if the file's times are written to more than six decimals.
-    time_base_s = 1e-9 if max(start.decimals, trigger.decimals) > 6 else 1e-6
     _tell_constants(path, analog, repairs)
     rates, sample_count = settled_rates(
         written_rates, lambda: samples_held(Layout(analog_count, status_count, data_format)), repairs
@@ -225,7 +234,8 @@ def parse_configuration(
         trigger_time_ns=None if trigger.ns is None or ahead_ns is None else trigger.ns - ahead_ns,
         has_time_code=has_time_code,
         data_format=data_format,
-        time_stamp_unit_s=time_multiplier * time_base_s,
+        time_multiplier=time_multiplier,
+        time_base_s=NANOSECOND_S if max(start.decimals, trigger.decimals) > 6 else MICROSECOND_S,
     )
 
 

@@ -21,14 +21,19 @@ DAY_FIRST, MONTH_FIRST = "dd/mm", "mm/dd"
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 _STANDARD = re.compile(r"[0-9]{1,2}/[0-9]{1,2}/([0-9]{4}|[0-9]{2}),[0-9]{1,2}(:[0-9]{1,2}){2}(\.[0-9]{1,9})?")
 _WRITTEN = re.compile(
-    r"[ ,]*(?P<first>[0-9]{1,4}) *(?P<by>[-/.]) *(?P<second>[0-9]{1,2}|[A-Za-z]{3}) *(?P=by)"
-    r" *(?P<third>[0-9]{1,4})"
-    r"(?:[ ,]+|T)(?P<hour>[0-9]{1,2}) *: *(?P<minute>[0-9]{1,2}) *: *(?P<second_s>[0-9]{1,2})"
-    r"(?:[.,](?P<fraction>[0-9]{1,9}))?[ ,]*",
+    r"[ ,]*(?P<first>[0-9]{1,4}|[A-Za-z]{3,9}) *(?P<by>[-/. ]) *(?P<second>[0-9]{1,2}|[A-Za-z]{3,9})"
+    r" *(?:(?P=by)|,) *(?P<third>[0-9]{1,4})"
+    r"(?:[ ,;]+|T)(?P<hour>[0-9]{1,2}) *: *(?P<minute>[0-9]{1,2}) *: *(?P<second_s>[0-9]{1,2})"
+    r"(?:[.,:](?P<fraction>[0-9]{1,9}))? *(?P<half>[AaPp][Mm])?(?P<utc>Z)?[ ,]*",
     re.ASCII,
 )
 _FRACTION = re.compile(r"\.([0-9]{1,9})", re.ASCII)
-_MONTHS = ("jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec")
+_MONTHS = (
+    "january", "february", "march", "april", "may", "june", "july", "august", "september", "october",
+    "november", "december",
+)  # fmt: skip
+_FEWEST_LETTERS = 3
+_NOON_H = 12
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,10 +46,13 @@ class Moment:
         Nanoseconds since 1970 in the file's own time zone; None where a lenient reader could not tell.
     decimals : int
         Number of decimals of the seconds.
+    is_utc : bool, default False
+        Whether the date itself says that it is UTC, by a Z.
     """
 
     ns: int | None
     decimals: int
+    is_utc: bool = False
 
 
 def record_times(start: Line, trigger: Line, revision: int, repairs: Repairs) -> tuple[Moment, Moment]:
@@ -72,23 +80,26 @@ def record_times(start: Line, trigger: Line, revision: int, repairs: Repairs) ->
         If a line holds no date and time between 1970 and 2200, and the reader is strict.
     """
     orders = (MONTH_FIRST, DAY_FIRST) if revision == 1991 else (DAY_FIRST, MONTH_FIRST)
-    lines = (start, trigger)
-    fitting = [order for order in orders if all(_is_date(line, order) for line in lines)]
-    order = fitting[0] if fitting else orders[0]
-    first, second = (_moment(line, order, revision, repairs) for line in lines)
+    dates = [(line, _as_written(line)) for line in (start, trigger)]
+    fitting = (order for order in orders if all(_is_date(*one, order) for one in dates))
+    order = next(fitting, orders[0])
+    first, second = (_moment(*one, order, revision, repairs) for one in dates)
     return first, second
 
 
-def _is_date(line: Line, order: str) -> bool:
+def _is_date(line: Line, written: re.Match[str] | None, order: str) -> bool:
     """Whether the line is a date in this order; one in no form at all speaks against neither."""
-    written = _WRITTEN.fullmatch(line.joined)
     return written is None or isinstance(_of_calendar(line, written, order), datetime)
 
 
-def _moment(line: Line, order: str, revision: int, repairs: Repairs) -> Moment:
+def _as_written(line: Line) -> re.Match[str] | None:
+    """Return the parts of a date; quotes around it or its fields mean nothing."""
+    return _WRITTEN.fullmatch(line.joined.replace('"', ""))
+
+
+def _moment(line: Line, written: re.Match[str] | None, order: str, revision: int, repairs: Repairs) -> Moment:
     form = f"{'mm/dd/yy' if revision == 1991 else 'dd/mm/yyyy'},hh:mm:ss.ssssss"
-    written = _WRITTEN.fullmatch(line.joined)
-    if written is None:
+    if written is None or (written["utc"] and revision >= 2013):  # 2013 has a line of its own for that
         fault = line.refuse("", form, line.quoted())
         repairs.mend(fault, UNKNOWN)
         fraction = _FRACTION.search(line.joined)
@@ -103,9 +114,8 @@ def _moment(line: Line, order: str, revision: int, repairs: Repairs) -> Moment:
         repairs.warn(f"{fault}: read as {moment:%Y-%m-%d %H:%M:%S}")
     elapsed = moment - _EPOCH
     elapsed_s = elapsed.days * SECONDS_PER_DAY + elapsed.seconds
-    return Moment(
-        elapsed_s * NANOSECONDS_PER_SECOND + int((written["fraction"] or "").ljust(9, "0")), decimals
-    )
+    ns = elapsed_s * NANOSECONDS_PER_SECOND + int((written["fraction"] or "").ljust(9, "0"))
+    return Moment(ns, decimals, is_utc=bool(written["utc"]))
 
 
 def _is_standard(line: Line, written: re.Match[str], order: str, revision: int) -> bool:
@@ -120,17 +130,19 @@ def _is_standard(line: Line, written: re.Match[str], order: str, revision: int) 
 def _of_calendar(line: Line, written: re.Match[str], order: str) -> datetime | RecordingError:
     """Return the date, or why it is none."""
     first, second, third = written["first"], written["second"], written["third"]
-    month: str | int
-    if len(first) == 4:
+    if len(first) == 4 and first.isdigit():
         year, month, day = first, second, third
-    elif second.isalpha() or order == DAY_FIRST:
+        if month.isdigit() and int(month) > len(_MONTHS):
+            month, day = day, month
+    elif second.isalpha() or (first.isdigit() and order == DAY_FIRST):
         day, month, year = first, second, third
     else:
         month, day, year = first, second, third
-    if second.isalpha():
-        if second.lower() not in _MONTHS:
-            return line.refuse("month", "the first three letters of a month", second)
-        month = _MONTHS.index(second.lower()) + 1
+    if month.isalpha():
+        named = [k for k, one in enumerate(_MONTHS, 1) if one.startswith(month.lower())]
+        if len(named) != 1 or len(month) < _FEWEST_LETTERS:
+            return line.refuse("month", "the name of a month, or its first three letters", month)
+        month = str(named[0])
     if len(year) not in (2, 4) or len(day) > 2:
         return line.refuse("year", "two or four digits", year)
     full = int(year)
@@ -138,7 +150,12 @@ def _of_calendar(line: Line, written: re.Match[str], order: str) -> datetime | R
         full += 1900 if full >= 70 else 2000
     if not 1970 <= full <= 2200:
         return line.refuse("year", "1970 to 2200", str(full))
-    time = (int(written["hour"]), int(written["minute"]), int(written["second_s"]))
+    hour = int(written["hour"])
+    if half := written["half"]:
+        if not 1 <= hour <= _NOON_H:
+            return line.refuse("hour", f"1 to 12 before {half}", str(hour))
+        hour = hour % _NOON_H + _NOON_H * (half.lower() == "pm")
+    time = (hour, int(written["minute"]), int(written["second_s"]))
     try:
         return datetime(full, int(month), int(day), *time, tzinfo=UTC)
     except ValueError as error:

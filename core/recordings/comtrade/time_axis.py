@@ -7,13 +7,14 @@ Beside a gap, a step back tells that the recorder began again: what is behind it
 more, so that nothing is interpolated across it.
 """
 
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from core.recordings.comtrade.configuration import Configuration
+from core.recordings.comtrade.configuration import MICROSECOND_S, NANOSECOND_S, Configuration
 from core.recordings.errors import RecordingError
 from core.recordings.repairs import Repairs
 from core.units import NANOSECONDS_PER_SECOND
@@ -89,17 +90,11 @@ def time_base(
         stamps = _counted_on(path, stamps, repairs)
         return _of_stamps(path, stamps * configuration.time_stamp_unit_s, configuration.time_stamp_unit_s)
     nominal = _Nominal.of(configuration.rates)
-    instants = None
     try:
-        span = _counter_span(stamps, 2.0 * nominal.periods.max() / configuration.time_stamp_unit_s)
-        instants = _with_gaps(path, stamps, nominal, configuration.time_stamp_unit_s, span)
+        instants, span = _shown(path, stamps, nominal, configuration.time_stamp_unit_s)
         _tell_turns(path, stamps, span, repairs)
     except RecordingError as fault:
-        instants = _begun_again(stamps, nominal, configuration.time_stamp_unit_s)
-        if instants is None:
-            repairs.mend(fault, "the time stamps are ignored")
-        else:
-            repairs.warn(f"{fault}: the gaps are kept; what is behind a step back is set apart")
+        instants = _otherwise(path, stamps, nominal, configuration, fault, repairs)
     if instants is None and len(configuration.rates) > 1:
         instants = nominal.times(np.arange(stamps.size))
     return TimeBase(configuration.rates[0][0], instants)
@@ -176,6 +171,41 @@ class _Nominal:
 
     def period(self, samples: NDArray[np.intp]) -> NDArray[np.float64]:
         return self.periods[np.searchsorted(self.firsts, samples, side="right") - 1]
+
+
+def _shown(
+    path: Path, stamps: NDArray[np.float64], nominal: _Nominal, unit_s: float
+) -> tuple[NDArray[np.float64] | None, int | None]:
+    """Return the times with the gaps that stamps show, None without any, and the span of their counter."""
+    span = _counter_span(stamps, 2.0 * nominal.periods.max() / unit_s)
+    return _with_gaps(path, stamps, nominal, unit_s, span), span
+
+
+def _otherwise(
+    path: Path,
+    stamps: NDArray[np.float64],
+    nominal: _Nominal,
+    configuration: Configuration,
+    fault: RecordingError,
+    repairs: Repairs,
+) -> NDArray[np.float64] | None:
+    """Return the times of stamps that contradict the rates: as microseconds, or begun again beside gaps.
+
+    Editions before 2013 know only microseconds: some recorders write more decimals of a second in their dates
+    all the same. Where microseconds are just what the rates give, that is the only way to read the stamps.
+    """
+    if configuration.revision < 2013 and configuration.time_base_s == NANOSECOND_S:
+        with suppress(RecordingError):
+            instants, span = _shown(path, stamps, nominal, configuration.time_multiplier * MICROSECOND_S)
+            repairs.warn(f"{fault}: the time stamps are microseconds, not nanoseconds as the dates are")
+            _tell_turns(path, stamps, span, repairs)
+            return instants
+    instants = _begun_again(stamps, nominal, configuration.time_stamp_unit_s)
+    if instants is None:
+        repairs.mend(fault, "the time stamps are ignored")
+    else:
+        repairs.warn(f"{fault}: the gaps are kept; what is behind a step back is set apart")
+    return instants
 
 
 def _with_gaps(

@@ -12,7 +12,8 @@ _OTHER = re.compile(
     r"(?:UTC|GMT)? *([+-]?) *([0-9]{1,2})(?: *[h:] *(?:([0-9]{2}) *(?:m|min)?)?)?", re.ASCII | re.IGNORECASE
 )
 _FOUR_DIGITS = re.compile(r"(?:UTC|GMT)? *([+-]) *([0-9]{2})([0-9]{2})", re.ASCII | re.IGNORECASE)
-"""There is one way to read +5h, +05:30, UTC+1 and +0530."""
+_DECIMAL = re.compile(r"([+-]?)([0-9]{1,2})\.(0|00|25|5|50|75)", re.ASCII)
+"""There is one way to read +5h, +05:30, UTC+1, +0530 and +5.5."""
 _ZERO = ("z", "utc", "gmt")
 _MOST_H, _MOST_MIN = 14, 59
 
@@ -78,6 +79,9 @@ def _minutes(code: str) -> int | None:
     """Minutes ahead of UTC; None where the code tells none."""
     if code.casefold() in _ZERO:
         return 0
+    if decimal := _DECIMAL.fullmatch(code):
+        quarters = int(decimal[3].ljust(2, "0")) * 60 // 100
+        code = f"{decimal[1]}{decimal[2]}h{quarters:02}"
     parts = _STANDARD.fullmatch(code) or _OTHER.fullmatch(code) or _FOUR_DIGITS.fullmatch(code)
     if parts is None or int(parts[2]) > _MOST_H or int(parts[3] or 0) > _MOST_MIN:
         return None

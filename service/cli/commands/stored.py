@@ -197,7 +197,9 @@ def upload(
     motor: MotorName,
     files: Annotated[
         list[Path],
-        typer.Argument(metavar="FILE...", help="One recording: .CFG and .DAT, or .CFF, or .CEV."),
+        typer.Argument(
+            metavar="FILE...", help="One recording: .CFG and .DAT, or .CFF, or .CEV, or a table of samples."
+        ),
     ],
     url: Url = DEFAULT_URL,
     wait: VerdictWait = 0.0,

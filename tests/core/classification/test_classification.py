@@ -59,6 +59,8 @@ def test_a_motor_of_whose_winding_nothing_is_known_is_not_called_healthy() -> No
     found = classify(Evidence((_alone(CAGE, -3.0),), {TURNS: "no voltages"}))
     assert not found.is_told
     assert found.words == "nothing is seen, and not all is known"
+    document = found.as_dict()
+    assert (document["answer"], document["probability"]) == ([], 0.0)
     assert not classify(Evidence(())).is_told
 
 

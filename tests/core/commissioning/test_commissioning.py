@@ -344,7 +344,7 @@ def test_of_two_starts_one_load_may_change() -> None:
 def test_a_load_that_changes_twice_widens_the_intervals_and_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     levels = ((0.0, 0.3), (0.1, 0.3), (0.101, 0.8), (0.2, 0.8), (0.201, 0.4), (50.0, 0.4))
     monkeypatch.setattr(StartRecord, "load", Load(0.3, cycle=LoadCycle(levels, 100.0)))
-    result = commission([StartRecord(duration_s=0.8, snr_db=60.0).of(REFERENCE)], plate_of(REFERENCE, MIDDLE))
+    result = found(REFERENCE, StartRecord(duration_s=0.4, sample_rate_hz=4_000.0, snr_db=60.0))
     assert any("noise does not explain" in one for one in result.warnings)
     for name in PARAMETERS:
         low, high = result.parameters[name].ci95 or (0.0, np.inf)

@@ -1,5 +1,7 @@
 """Names, phase fields and units as relays of several makes write them."""
 
+from collections.abc import Sequence
+
 import pytest
 
 from core.recordings import Quantity
@@ -89,6 +91,40 @@ def roles(*channels: tuple[str, str, str]) -> list[tuple[Quantity, str | None]]:
 )
 def test_one_channel(name: str, phase_field: str, unit: str, quantity: Quantity, phase: str | None) -> None:
     assert roles((name, phase_field, unit)) == [(quantity, phase)]
+
+
+WORDED = (
+    ("{} phase current", "{} phase voltage"),
+    ("{}-Ph Current", "{}-Ph Voltage"),
+    ("{}_PH_CURRENT", "{}_PH_VOLTAGE"),
+    ("{} current", "{} voltage"),
+    ("Amps {}", "Volts {}"),
+    ("CT {}", "VT {}"),
+    ("CT {}", "PT {}"),
+    ("Iph{}", "Vph_{}"),
+    ("I-{}", "V-{}N"),
+)
+
+
+@pytest.mark.parametrize("phases", ["ABC", "RYB", "UVW", ("L1", "L2", "L3")])
+@pytest.mark.parametrize(("current", "voltage"), WORDED)
+def test_phases_beside_words(phases: Sequence[str], current: str, voltage: str) -> None:
+    channels = [(current.format(one), "", "A") for one in phases]
+    channels += [(voltage.format(one), "", "V") for one in phases]
+    expected = [(kind, phase) for kind in (CURRENT, PHASE_VOLTAGE) for phase in "abc"]
+    assert roles(*channels) == expected
+
+
+def test_phases_told_by_their_colours() -> None:
+    colours = ("Red", "YELLOW", "blue")
+    found = roles(
+        *((f"{one} phase current", "", "A") for one in colours), *((f"V {one}", "", "V") for one in colours)
+    )
+    assert found == [(kind, phase) for kind in (CURRENT, PHASE_VOLTAGE) for phase in "abc"]
+
+
+def test_a_motors_letter_is_no_phase() -> None:
+    assert roles(("Motor A current", "", "A"), ("Motor B current", "", "A")) == [(CURRENT, None)] * 2
 
 
 def test_numbered_phases_need_all_three() -> None:

@@ -130,6 +130,13 @@ def test_wide_letters(tmp_path: Path, mark: bytes, encoding: str, *, data_too: b
     assert "the text is UTF-" in found.warnings[0]
 
 
+@pytest.mark.parametrize("encoding", ["utf-16-le", "utf-16-be"])
+def test_wide_letters_of_another_alphabet(tmp_path: Path, encoding: str) -> None:
+    path = RECORD_1999.but(identification="НАСОСНАЯ,RELAY 1,1999").write(tmp_path)
+    path.write_bytes(path.read_bytes().decode().encode(encoding))
+    assert read(path).station == "НАСОСНАЯ"
+
+
 def test_a_mark_before_ascii_data(tmp_path: Path) -> None:
     path = ASCII.write(tmp_path)
     data = path.with_suffix(".dat")
@@ -204,6 +211,11 @@ DATES = {
     "decimal comma": ("21/11/2024,06:30:00,25", "21/11/2024,06:30:00,252"),
     "spaces": ("21/11/2024, 6:30: 0.250000", " 21/ 11/2024 ,06: 30:00.252000"),
     "one field": ("21/11/2024 06:30:00.250000", "21/11/2024 06:30:00.252000"),
+    "month in a word": ("21 November 2024,06:30:00.25", "Nov 21, 2024 06:30:00.252"),
+    "year first, then the day": ("2024-21-11,06:30:00.25", "2024-21-11,06:30:00.252"),
+    "quotes": ('"21/11/2024",06:30:00.25', '"21/11/2024,06:30:00.252"'),
+    "other signs between": ("21/11/2024;06:30:00:25", "21/11/2024,06:30:00:252"),
+    "before noon": ("21/11/2024,06:30:00.25 AM", "21/11/2024,6:30:00.252am"),
     "commas behind": ("21/11/2024,06:30:00.250000,,", "21/11/2024,06:30:00.252000,"),
 }
 
@@ -212,6 +224,23 @@ DATES = {
 def test_dates_that_can_be_read_one_way_only(tmp_path: Path, start: str, trigger: str) -> None:
     note = "read as 2024-11-21 06:30:00"
     same(tmp_path, RECORD_1999.but(start=start, trigger=trigger), note, note)
+
+
+def test_after_noon(tmp_path: Path) -> None:
+    record = RECORD_1999.but(start="21/11/2024,12:00:00.25 PM", trigger="21/11/2024,12:00:00.252 PM")
+    assert "read as 2024-11-21 12:00:00" in read(record.write(tmp_path)).warnings[0]
+    with pytest.raises(RecordingError, match="hour: expected 1 to 12 before PM"):
+        read(record.but(start="21/11/2024,13:00:00.25 PM").write(tmp_path))
+
+
+def test_a_date_that_says_it_is_utc(tmp_path: Path) -> None:
+    """A plant whose relays run in local time does not move it."""
+    dates = {"start": "2024-11-21T06:30:00.25Z", "trigger": "2024-11-21T06:30:00.252Z"}
+    found = read(RECORD_1999.but(**dates).write(tmp_path))
+    assert found.has_time_code
+    assert found.start_time_ns == read(RECORD_1999.write(tmp_path)).start_time_ns
+    with pytest.raises(RecordingError, match="time of the first sample"):
+        read(RECORD_2013.but(**dates).write(tmp_path))
 
 
 def test_day_first_in_1991(tmp_path: Path) -> None:
@@ -236,7 +265,7 @@ def test_what_the_edition_says_holds_where_both_orders_are_dates(tmp_path: Path)
 @pytest.mark.parametrize(
     ("code", "minutes"),
     [("+5h", 300), ("-5h", -300), ("+05:30", 330), ("UTC+1", 60), ("+0530", 330), ("UTC", 0), ("Z", 0),
-     ("5h30m", 330)],
+     ("5h30m", 330), ("+5.5", 330), ("-3.25", -195)],
 )  # fmt: skip
 def test_time_codes(tmp_path: Path, code: str, minutes: int) -> None:
     found = read(RECORD_2013.but(tail=("1", f"{code},{code}", "0,0")).write(tmp_path))

@@ -75,6 +75,20 @@ def test_rates_beside_times_in_nanoseconds(tmp_path: Path) -> None:
     assert read(record.write(tmp_path)).time_s * 1e3 == pytest.approx([0, 1, 3, 5, 7])
 
 
+def test_microseconds_beside_dates_in_nanoseconds(tmp_path: Path) -> None:
+    """Editions before 2013 know no nanoseconds; stamps that are nanoseconds by the rate are read as such."""
+    dates = {"start": "21/11/2024,06:30:00.250000000", "trigger": "21/11/2024,06:30:00.252000000"}
+    recording = read(RECORD_1999.but(**dates).write(tmp_path))
+    assert (recording.trigger_index, recording.instants_s) == (2, None)
+    (warning,) = recording.warnings
+    assert warning.endswith("the time stamps are microseconds, not nanoseconds as the dates are")
+    fine = [1_000_000 * k for k in range(5)]
+    assert read(RECORD_1999.but(**dates, stamps=fine).write(tmp_path)).warnings == ()
+    for record in (RECORD_2013.but(**dates), RECORD_1999.but(**dates, stamps=[10 * k for k in range(5)])):
+        with pytest.raises(RecordingError, match="time stamp"):
+            read(record.write(tmp_path))
+
+
 def test_stamps_that_contradict_one_of_the_rates_are_refused(tmp_path: Path) -> None:
     stamps = [1000 * k for k in range(10)] + [9000 + 1000 * k for k in range(1, 31)]
     record = long_record(40, rates=("2", "1000,10", "4000,40"), stamps=stamps)
