@@ -29,8 +29,8 @@ SMALL: Final = 0.02
 """Change that is asked about, over the rated torque."""
 LEAST_LEFT: Final = 0.05
 """Share of the squared residuals that a change must explain to be tried: little, as most of them is noise."""
-LEAST_OF_A_CHANGING_MOTOR: Final = 0.2
-"""The same of a motor with deep bars: errors of its model are left, too, of which a load may explain some."""
+MUCH: Final = 0.2
+"""Share from which a change is likely. Of a motor with deep bars, errors of its model are left, too."""
 LEAST_CHANGE: Final = 0.02
 """A smaller change, over the rated torque, is not told."""
 LIKELY_LOAD: Final = 1.5
@@ -41,8 +41,8 @@ LEAST_EXPLAINED: Final = 1e-3
 """Share of the current that it must explain."""
 
 
-def is_seen(records: Records, fit: Fit) -> bool:
-    """Tell whether a step of the load would explain much of what a fit left; a rise is much like one.
+def share_explained(records: Records, fit: Fit) -> float:
+    """Return how much of what a fit left a step of the load would explain; a rise is much like one.
 
     Parameters
     ----------
@@ -53,17 +53,18 @@ def is_seen(records: Records, fit: Fit) -> bool:
 
     Returns
     -------
-    bool
-        Whether one would, in any start.
+    float
+        The greatest share of a start's squared residuals; 0 of what is a negligible part of its current.
     """
     _, explained = _begun(records, fit, LENGTHS[0])
     energies = [float((start.measured_ab**2).sum()) for start in records.starts]
     left = [float((residual**2).sum()) for residual in fit.residuals]
-    least = least_explained(records)
-    return any(
-        gain > max(least * error, LEAST_EXPLAINED**2 * energy)
+    shares = [
+        gain / error
         for gain, error, energy in zip(explained, left, energies, strict=True)
-    )
+        if gain > LEAST_EXPLAINED**2 * energy
+    ]
+    return max(shares, default=0.0)
 
 
 def least_explained(records: Records) -> float:
@@ -79,7 +80,7 @@ def least_explained(records: Records) -> float:
     float
         The share.
     """
-    return LEAST_OF_A_CHANGING_MOTOR if records.coordinates.changes else LEAST_LEFT
+    return MUCH if records.coordinates.changes else LEAST_LEFT
 
 
 def beginnings(records: Records, fit: Fit) -> list[Array]:

@@ -16,10 +16,11 @@ import numpy as np
 from core.commissioning.errors import DivergenceError
 from core.commissioning.fit import COARSELY, Fit, Records, every
 from core.commissioning.load_change import (
+    MUCH,
     are_possible,
     beginnings,
-    is_seen,
     least_explained,
+    share_explained,
     with_load_changes,
 )
 from core.commissioning.prior import Prior
@@ -119,24 +120,33 @@ def _with_load_changes(plain: "Fits", fits: "Fits", found: Chosen, laws: Sequenc
 
     A motor that does not change may seem to, where its load does: both kinds are tried.
     """
-    if not is_seen(*fits[found.law]):
+    share = share_explained(*fits[found.law])
+    if share <= least_explained(fits[found.law][0]):
         return None
+    if share <= MUCH and _with_change(fits, (found.law,), found) is None:
+        return None  # all kinds and laws take long, and one says whether it is worth it
     best: Chosen | None = None
     for kind in (plain, fits) if fits is not plain else (plain,):
-        changing: Fits = {}
-        for law, (records, fit) in kind.items():
-            begun = ({law: (with_load_changes(records), vector)} for vector in beginnings(records, fit))
-            tried = [one for each in begun for one in _fitted(each).values() if are_possible(*one)]
-            if tried:
-                changing[law] = min(tried, key=lambda one: one[1].squared_error)
-        if not changing:
-            continue
-        chosen = _chosen(changing, laws)
-        before = found if best is None else best
-        records = changing[chosen.law][0]
-        if _is_better(records, chosen.fit, before.fit, most_left=1.0 - least_explained(records)):
-            best = chosen
+        best = _with_change(kind, laws, best or found) or best
     return None if best is None else replace(best, steadily=found)
+
+
+def _with_change(kind: "Fits", laws: Sequence[LoadLaw], before: Chosen) -> Chosen | None:
+    """Return the choice among these laws with loads that change; None where it is no better than before."""
+    changing: Fits = {}
+    for law, (records, fit) in kind.items():
+        if law not in laws:
+            continue
+        begun = ({law: (with_load_changes(records), vector)} for vector in beginnings(records, fit))
+        tried = [one for each in begun for one in _fitted(each).values() if are_possible(*one)]
+        if tried:
+            changing[law] = min(tried, key=lambda one: one[1].squared_error)
+    if not changing:
+        return None
+    chosen = _chosen(changing, laws)
+    records = changing[chosen.law][0]
+    is_better = _is_better(records, chosen.fit, before.fit, most_left=1.0 - least_explained(records))
+    return chosen if is_better else None
 
 
 Fits = dict[LoadLaw, tuple[Records, Fit]]

@@ -19,6 +19,11 @@ def watched(watch: Watch) -> Iterator[None]:
     watch : callable
         Takes how many functions have been compiled and how many there are; what it returns is entered while
         the next one is compiled.
+
+    Yields
+    ------
+    None
+        While the block runs.
     """
     _watches.append(watch)
     try:
