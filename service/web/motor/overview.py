@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from typing import Final
 
 from service.api.conditions.documents import until_stop_document
+from service.condition.trend_marks import trend_marks
 from service.storage import Repository
 from service.storage.records import Alarm
 from service.web.charts import Chart
-from service.web.motor.marks import trend_marks
 from service.web.motor.measured_charts import measured_charts
 from service.web.motor.page import MotorHead
 from service.web.motor.stop import StopLine, stop_line

@@ -10,6 +10,7 @@ from core.condition.kinds import Kind
 from core.machines.parameters import MachineKind
 from service.access.permissions import Permission
 from service.api.access.requirements import require
+from service.api.conditions.undo import latest_to_undo
 from service.api.document import Name
 from service.api.load.routes import MOST_DAYS
 from service.storage.states import InspectionOutcome
@@ -38,7 +39,6 @@ from service.web.motor.rotor import rotor_section
 from service.web.motor.supply import supply_section
 from service.web.motor.swings import swing_section
 from service.web.motor.time_range import USUAL
-from service.web.motor.undo import latest_to_undo
 from service.web.starts.starts import starts_of_motor
 from service.web.view import Looking, View
 

@@ -15,6 +15,7 @@ from service.api.access.requirements import require
 from service.api.conditions.notes import keep_note
 from service.api.conditions.planned_stops import keep_stop
 from service.api.conditions.schemas import NoteRequest, RestartRequest, StopRequest, Withdrawal
+from service.api.conditions.undo import undone
 from service.api.document import Name
 from service.api.problems import ProblemError
 from service.api.recordings.diagnoses import queue_diagnosis
@@ -24,7 +25,6 @@ from service.storage.repository.sites import AtSite
 from service.web.forms import document_of_form
 from service.web.motor.page import LOGBOOK, OVERVIEW, RECORDINGS, Tab, tab_address
 from service.web.motor.trend import trend_chart
-from service.web.motor.undo import UNDO_MINUTES, may_undo
 from service.web.view import Looking, View
 from service.web.words import phrase
 
@@ -126,19 +126,7 @@ def withdraw_note(view: Looking, name: Name, note_id: UUID, reason: Text = "") -
 @router.post("/motors/{name}/notes/{note_id}/undo", dependencies=[require(Permission.CONFIGURE)])
 def undo_note(view: Looking, name: Name, note_id: UUID) -> Response:
     """Undo what the same person has just done: withdraw a note, or keep one again that was withdrawn."""
-    note, by = view.context.repository.event(name, str(note_id)), view.asking.actor
-    if not may_undo(note, by.name, view.now_ns):
-        raise ProblemError(
-            HTTPStatus.CONFLICT,
-            f"expected a note that you wrote or retracted in the last {UNDO_MINUTES} minutes: retract it "
-            "with a reason, or write it again",
-        )
-    if note.withdrawn_ns is None:
-        reason = f"undone within {UNDO_MINUTES} minutes"
-        view.context.repository.withdraw_event(name, note.id, by=by, reason=reason, now_ns=view.now_ns)
-        view.context.on_new_job()
-    else:
-        keep_note(view.context, name, note.kind, note.reason, by, note.on_behalf_of, note.time_ns)
+    undone(view.context, name, str(note_id), view.asking.actor, view.now_ns)
     return _done(view, name, "undone", LOGBOOK)
 
 

@@ -1,11 +1,11 @@
 """The fault level of a motor over time as a chart: levels, intervals, limits, and what happened meanwhile."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Final
 
 from core.condition.kinds import State
 from core.units import NANOSECONDS_PER_SECOND
+from service.pictures.trend import TrendMark
 from service.storage.records.history import ThinnedTrend
 from service.web.charts import AxisKind, Chart, Kind, Limit, Mark, Series, Tone
 from service.web.motor.time_range import TimeRange, in_seconds
@@ -24,14 +24,6 @@ FAR: Final = 2.5
 """A line of a level so many times above all others would press them flat."""
 PERCENT: Final = 100.0
 DIGITS: Final = 4
-
-
-@dataclass(frozen=True, slots=True)
-class TrendMark:
-    """Something that happened at a time."""
-
-    time_ns: int
-    label: str
 
 
 def trend_chart(
@@ -78,7 +70,7 @@ def trend_chart(
         x_to=None if shown is None else shown.x_to,
         y_from=0.0,
         y_to=LEAST_TOP_PERCENT,
-        marks=[Mark(in_seconds(one.time_ns), one.label) for one in marks],
+        marks=[Mark(in_seconds(one.time_ns), one.words) for one in marks],
         limits=lines,
         sync=SYNC,
         height=TAB_HEIGHT,

@@ -17,6 +17,7 @@ from core.condition.verdict.condition import Condition as Judged
 from core.units import NANOSECONDS_PER_DAY, NANOSECONDS_PER_SECOND
 from service.api.conditions.schemas import Condition
 from service.condition.wording import KINDS, finding
+from service.notifications.trends import trend_drawing
 from service.plant import MeteredQuantity
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
@@ -142,6 +143,20 @@ def test_the_trend_has_levels_intervals_limits_and_what_happened(shown: Shown) -
     assert drawn["x"]["to"] == pytest.approx(time.time(), abs=60.0), "silence until now is to be seen"
     marks = [(one["label"], one["x"]) for one in drawn["marks"]]
     assert marks == [("note", pytest.approx(told_ns / 1e9, abs=0.01))]
+
+
+def test_the_picture_in_a_mail_shows_what_the_chart_shows(shown: Shown) -> None:
+    at_ns = time.time_ns() - 20 * 3600 * NANOSECONDS_PER_SECOND
+    note = Event(at_ns, EventKind.NOTE, "greased")
+    shown.repository.add_event(MOTOR, note, by=ADA, now_ns=time.time_ns())
+    drawn = chart(page(shown.client.get(HERE)))
+    svg = trend_drawing(shown.repository, MOTOR, "UTC")
+    assert svg is not None
+    told = html.fromstring(svg.encode()).xpath("//*[local-name()='text']/text()")
+    assert drawn["limits"][0]["label"] == "motor's limit 0.50 %"
+    assert "motor's limit 0.5 %" in told
+    assert drawn["marks"][-1]["label"] == "note"
+    assert f"{len(drawn['marks'])} note" in told
 
 
 def test_the_values_of_the_trend_stand_in_a_table(shown: Shown) -> None:
