@@ -41,8 +41,8 @@ def pictures(recording: str, alarm: str, starts: str | None) -> Sequence[Picture
         Picture("fleet-phone", "/", PHONE),
         Picture("motor", motor),
         Picture("motor-trend", motor, part="#trend"),
-        Picture("motor-pictures", motor, part="#pictures"),
-        *([] if starts is None else [Picture("motor-starts", starts, part="#starts figure")]),
+        Picture("motor-pictures", f"{motor}/stator", part="#pictures"),
+        *([] if starts is None else [Picture("motor-starts", starts, part="#curves")]),
         Picture("motor-phone", motor, PHONE),
         Picture("motor-phone-trend", motor, PHONE, part="#trend", onwards=True),
         Picture("recording", recording),
@@ -61,7 +61,7 @@ def pictures(recording: str, alarm: str, starts: str | None) -> Sequence[Picture
 def take_pictures(desktop: WatchedPage, phone: WatchedPage, folder: Path) -> None:
     """Write the pictures of a plant, with pages of it that are logged in."""
     folder.mkdir(parents=True, exist_ok=True)
-    desktop.goto(f"/motors/{FAULTY}")
+    desktop.goto(f"/motors/{FAULTY}/recordings")
     recording = _first(desktop, "/recordings/")
     desktop.goto("/alarms")
     alarm = _first(desktop, "/alarms/")

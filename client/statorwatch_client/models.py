@@ -21,6 +21,7 @@ AlarmEvent: TypeAlias = Literal[
     "superseded",
     "reopened",
     "acknowledged",
+    "acknowledgement-undone",
     "shelved",
     "unshelved",
     "shelving-ended",
@@ -117,6 +118,7 @@ AuditAction: TypeAlias = Literal[
     "stop-cancelled",
     "quarantine-released",
     "alarm-acknowledged",
+    "alarm-acknowledgement-undone",
     "alarm-shelved",
     "alarm-unshelved",
     "alarm-taken-out-of-service",
@@ -1767,6 +1769,14 @@ TrackingState: TypeAlias = Literal["steady", "drifting", "undetermined"]
 TriggerAction: TypeAlias = Literal["set-reset", "pulse"]
 
 
+class UndoRequest(TypedDict):
+    """
+    Alarms whose acknowledgement was a mistake.
+    """
+
+    alarms: list[str]
+
+
 class UntilStop(TypedDict):
     """
     Whether a motor holds until its planned stop, from what is seen of it today.
@@ -2869,6 +2879,15 @@ class TrendPoint(TypedDict):
     kind: NotRequired[Kind | None]
     phase: NotRequired[Literal["a", "b", "c"] | None]
     reasons: NotRequired[list[str] | None]
+
+
+class UndoneAcknowledgements(TypedDict):
+    """
+    The alarms that call again, and those for which that was not possible.
+    """
+
+    undone: list[Alarm]
+    refused: list[Refusal]
 
 
 class Waveform(TypedDict):

@@ -400,6 +400,23 @@ class Operations:
         )
         return answer
 
+    def undo_note(self, motor: str, note_id: str) -> models.Note:
+        """Undo within ten minutes what the same account did to a note: that it was written, or retracted.
+
+        One that was written is withdrawn; one that was retracted is kept again, as a new note of the same time.
+
+        Parameters
+        ----------
+        motor
+            Name of the motor.
+        note_id
+            As a document tells it.
+        """
+        answer: models.Note = self._document(
+            Request("POST", f"/api/v1/motors/{segment(motor)}/notes/{segment(note_id)}/undo")
+        )
+        return answer
+
     def get_planned_stop(self, motor: str) -> models.PlannedStop:
         """Return when a motor stops next: by its own plan, or by that of its site where it is earlier.
 
@@ -1188,6 +1205,21 @@ class Operations:
         """
         answer: models.Acknowledgements = self._document(
             Request("POST", "/api/v1/alarms/acknowledgements", json=document)
+        )
+        return answer
+
+    def undo_acknowledgements(self, document: models.UndoRequest) -> models.UndoneAcknowledgements:
+        """Have alarms call again that the same account has acknowledged in the last ten minutes.
+
+        One whose cause went meanwhile is over, and stays so. 409 where it is possible for none.
+
+        Parameters
+        ----------
+        document
+            What is sent.
+        """
+        answer: models.UndoneAcknowledgements = self._document(
+            Request("POST", "/api/v1/alarms/acknowledgements/undo", json=document)
         )
         return answer
 

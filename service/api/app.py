@@ -20,7 +20,7 @@ from service.api.alarms import people as alarm_people
 from service.api.audit import trail as audit_trail
 from service.api.backups import routes as backups
 from service.api.classification import routes as classification
-from service.api.conditions import notes, planned_stops
+from service.api.conditions import notes, planned_stops, undo
 from service.api.conditions import routes as conditions
 from service.api.context import ApiContext
 from service.api.exports import routes as exports
@@ -80,6 +80,7 @@ def create_app(
         motors,
         conditions,
         notes,
+        undo,
         planned_stops,
         inspections,
         rotor_and_supply,

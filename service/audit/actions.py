@@ -23,6 +23,7 @@ class AuditAction(StrEnum):
     STOP_CANCELLED = "stop-cancelled"
     QUARANTINE_RELEASED = "quarantine-released"
     ALARM_ACKNOWLEDGED = "alarm-acknowledged"
+    ALARM_ACKNOWLEDGEMENT_UNDONE = "alarm-acknowledgement-undone"
     ALARM_SHELVED = "alarm-shelved"
     ALARM_UNSHELVED = "alarm-unshelved"
     ALARM_TAKEN_OUT_OF_SERVICE = "alarm-taken-out-of-service"
@@ -81,6 +82,7 @@ MEANINGS: Mapping[AuditAction, str] = {
     AuditAction.STOP_CANCELLED: "Somebody dropped the plan of a stop.",
     AuditAction.QUARANTINE_RELEASED: "Somebody had a relay visited again; `before` is why it was set aside.",
     AuditAction.ALARM_ACKNOWLEDGED: "Somebody took notice of an alarm, with the comment in `after`.",
+    AuditAction.ALARM_ACKNOWLEDGEMENT_UNDONE: "Who acknowledged an alarm undid it within ten minutes.",
     AuditAction.ALARM_SHELVED: "Somebody set an alarm aside; `after` says until when, or until which value.",
     AuditAction.ALARM_UNSHELVED: "Somebody ended the shelving of an alarm.",
     AuditAction.ALARM_TAKEN_OUT_OF_SERVICE: "Somebody set an alarm aside without an end.",

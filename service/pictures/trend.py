@@ -28,6 +28,9 @@ LONGEST_TITLE = 40
 MOST_MARKS = 40
 """Events beyond these are not readable; the latest are shown."""
 
+LETTER = 6.0
+"""Width of a letter of a mark's words, of about ten pixels."""
+
 CALLS = ("watch", "fault")
 
 
@@ -67,7 +70,7 @@ def trend_picture(
     points: oldest first, shares of the phase turns. limit: the level from which on the motor has a fault.
     ahead: the level that the forecast is about.  detectable: the least step that would be seen; either is
     drawn unless it is far above all else.  until_ns: where the time shown ends.  marks: what happened
-    meanwhile, numbered from the left.
+    meanwhile, numbered from the left, with its words where they have room.
     """
     known = thinned([point for point in points if isfinite(point.value)])
     drawing = Drawing(
@@ -150,10 +153,12 @@ def _level(
 
 def _marks(drawing: Drawing, frame: _Frame, marks: Sequence[TrendMark], look: Look) -> None:
     shown = [mark for mark in marks if frame.first_ns <= mark.time_ns <= frame.last_ns][-MOST_MARKS:]
-    for number, mark in enumerate(shown, start=1):
-        x = frame.x(mark.time_ns)
+    places = [frame.x(mark.time_ns) for mark in shown] + [WIDTH - RIGHT]
+    for number, (mark, x, after) in enumerate(zip(shown, places, places[1:], strict=False), start=1):
         drawing.line(x, TOP, x, HEIGHT - BOTTOM, stroke=look.accent, stroke_dasharray="1 3")
-        drawing.text(x, TOP - 2, str(number), anchor="middle", fill=look.accent, font_size="10")
+        words = f"{number} {mark.words}"
+        has_room = x + LETTER * len(words) < after
+        drawing.text(x, TOP - 2, words if has_room else str(number), fill=look.accent, font_size="10")
 
 
 def _interval(drawing: Drawing, frame: _Frame, points: Sequence[TrendPoint], look: Look) -> None:

@@ -59,6 +59,8 @@ TRANSITIONS: Mapping[AlarmEvent, Mapping[AlarmState, Following]] = {
     AlarmEvent.REOPENED: {ACKNOWLEDGED: UNACKNOWLEDGED, SHELVED: UNACKNOWLEDGED},
     # Of people.
     AlarmEvent.ACKNOWLEDGED: {UNACKNOWLEDGED: ACKNOWLEDGED, RETURNED: NORMAL},
+    # By who acknowledged it, within minutes: afterwards others count on it.
+    AlarmEvent.ACKNOWLEDGEMENT_UNDONE: {ACKNOWLEDGED: UNACKNOWLEDGED},
     AlarmEvent.SHELVED: {
         UNACKNOWLEDGED: SHELVED,
         ACKNOWLEDGED: SHELVED,
@@ -87,7 +89,7 @@ OF_PEOPLE = (
     AlarmEvent.TAKEN_OUT_OF_SERVICE,
     AlarmEvent.PUT_BACK_IN_SERVICE,
 )
-"""These events are what people do; all others come by themselves."""
+"""These events are what people do; all others come by themselves, but for an undone acknowledgement."""
 
 
 def following(state: AlarmState, event: AlarmEvent, *, standing: bool) -> AlarmState | None:

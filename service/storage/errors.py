@@ -262,6 +262,7 @@ class AlarmCannotGrowError(StorageError):
 
 DEED = {
     AlarmEvent.ACKNOWLEDGED: "acknowledge",
+    AlarmEvent.ACKNOWLEDGEMENT_UNDONE: "undo the acknowledgement",
     AlarmEvent.SHELVED: "shelve",
     AlarmEvent.UNSHELVED: "unshelve",
     AlarmEvent.TAKEN_OUT_OF_SERVICE: "take out of service",
@@ -271,6 +272,7 @@ DEED = {
 
 PARTICIPLE = {
     AlarmEvent.ACKNOWLEDGED: "acknowledged",
+    AlarmEvent.ACKNOWLEDGEMENT_UNDONE: "made unacknowledged again",
     AlarmEvent.SHELVED: "shelved",
     AlarmEvent.UNSHELVED: "unshelved",
     AlarmEvent.TAKEN_OUT_OF_SERVICE: "taken out of service",

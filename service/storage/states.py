@@ -38,6 +38,7 @@ class AlarmEvent(StrEnum):
     SUPERSEDED = "superseded"
     REOPENED = "reopened"
     ACKNOWLEDGED = "acknowledged"
+    ACKNOWLEDGEMENT_UNDONE = "acknowledgement-undone"
     SHELVED = "shelved"
     UNSHELVED = "unshelved"
     SHELVING_ENDED = "shelving-ended"

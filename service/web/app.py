@@ -12,8 +12,8 @@ from service.web.fleet import routes as fleet
 from service.web.help.pages import FOLDER, HelpPages
 from service.web.html_problems import HtmlProblems
 from service.web.live import routes as live
-from service.web.load import routes as load
 from service.web.motor import inspections, relay_reports
+from service.web.motor import pages as motor_pages
 from service.web.motor import routes as motor
 from service.web.notifications import routes as notifications
 from service.web.people import account, passkeys, second_factor
@@ -44,10 +44,10 @@ ROOMS = (
     audit,
     plant,
     notifications,
+    motor_pages,
     motor,
     relay_reports,
     inspections,
-    load,
     starts,
 )
 """Each has the routes of some pages in its `router`."""

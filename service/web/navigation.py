@@ -1,4 +1,4 @@
-"""The links at the top of each page."""
+"""The links at the top of each page, and those below them where a subject has several pages."""
 
 from collections.abc import Collection
 from dataclasses import dataclass
@@ -8,45 +8,79 @@ from service.access.permissions import Permission
 
 
 @dataclass(frozen=True, slots=True)
+class Place:
+    """A page that people go to. below: addresses of pages that belong to it, beside those that begin so."""
+
+    path: str
+    words: str
+    needed: Permission
+    below: tuple[str, ...] = ()
+
+    def has(self, path: str) -> bool:
+        """Tell whether a page is this one, or belongs to it."""
+        return any(path == one or path.startswith(f"{one.rstrip('/')}/") for one in self.below) or (
+            path == self.path or (self.path != "/" and path.startswith(f"{self.path}/"))
+        )
+
+
+@dataclass(frozen=True, slots=True)
 class Link:
-    """A page that people go to. is_here: whether they look at it, or at one below it."""
+    """A link to a page. is_here: whether they look at it, or at one that belongs to it."""
 
     path: str
     words: str
     is_here: bool = False
 
 
-PAGES: Final[tuple[tuple[str, str, Permission], ...]] = (
-    ("/", "Fleet", Permission.VIEW),
-    ("/starts", "Starts", Permission.VIEW),
-    ("/alarms", "Alarms", Permission.VIEW),
-    ("/recordings", "Recordings", Permission.VIEW),
-    ("/relays", "Relays", Permission.VIEW),
-    ("/reports", "Reports", Permission.VIEW),
-    ("/plant", "Plant", Permission.VIEW),
-    ("/notifications", "Notifications", Permission.NOTIFY),
-    ("/people", "People", Permission.USERS),
-    ("/audit", "Audit trail", Permission.AUDIT),
-    ("/account", "Account", Permission.ACCOUNT),
+@dataclass(frozen=True, slots=True)
+class Links:
+    """The links of a page: to all subjects, and to the pages of the subject that is looked at."""
+
+    subjects: tuple[Link, ...]
+    pages: tuple[Link, ...] = ()
+
+    @property
+    def here(self) -> str:
+        """Return what the subject that is looked at is called; empty where it is none of them."""
+        return next((one.words for one in self.subjects if one.is_here), "")
+
+
+SUBJECTS: Final = (
+    Place("/", "Fleet", Permission.VIEW, ("/motors", "/wall")),
+    Place("/alarms", "Alarms", Permission.VIEW),
+    Place("/recordings", "Recordings", Permission.VIEW, ("/starts",)),
+    Place("/relays", "Relays", Permission.VIEW),
+    Place("/reports", "Reports", Permission.VIEW),
 )
-"""The path of each page, its name, and what one needs to see it."""
+SETTINGS: Final = "Settings"
+OF_SETTINGS: Final = (
+    Place("/plant", "Plant", Permission.VIEW),
+    Place("/notifications", "Notifications", Permission.NOTIFY),
+    Place("/people", "People", Permission.USERS),
+    Place("/audit", "Audit trail", Permission.AUDIT),
+    Place("/account", "Account", Permission.ACCOUNT),
+)
+PAGES: Final = (*SUBJECTS, *OF_SETTINGS)
+"""All pages that a link leads to from anywhere."""
 
 
-def links_for(permissions: Collection[Permission], path: str) -> tuple[Link, ...]:
-    """Return the links to the pages that somebody with these permissions may see."""
-    return tuple(
-        Link(address, words, _is_below(path, address))
-        for address, words, needed in PAGES
-        if needed in permissions
-    )
+def links_for(permissions: Collection[Permission], path: str) -> Links:
+    """Return the links that somebody with these permissions may follow, on the page of a path.
+
+    Settings lead to the first of their pages, which has links to the others.
+    """
+    subjects = _links(SUBJECTS, permissions, path)
+    settings = _links(OF_SETTINGS, permissions, path)
+    is_here = any(one.is_here for one in settings)
+    if settings:
+        subjects += (Link(settings[0].path, SETTINGS, is_here),)
+    return Links(subjects, settings if is_here else ())
 
 
 def home_of(permissions: Collection[Permission]) -> str:
     """Return the page that somebody with these permissions begins with."""
-    return next((address for address, _, needed in PAGES if needed in permissions), "/account")
+    return next((one.path for one in PAGES if one.needed in permissions), "/account")
 
 
-def _is_below(path: str, address: str) -> bool:
-    if address == "/":
-        return path == "/" or path.startswith("/motors")
-    return path == address or path.startswith(f"{address}/")
+def _links(places: Collection[Place], permissions: Collection[Permission], path: str) -> tuple[Link, ...]:
+    return tuple(Link(one.path, one.words, one.has(path)) for one in places if one.needed in permissions)

@@ -40,6 +40,7 @@ NOTICES: Final[Mapping[str, str]] = {
     "inspection-withdrawn": "The inspection counts no more.",
     "stop-planned": "The stop is planned. The motor's page says whether it may run until then.",
     "stop-cancelled": "The plan is dropped.",
+    "acknowledgement-undone": "Undone. The alarms are unacknowledged again.",
     "undone": "Undone. The condition follows within seconds.",
 }
 

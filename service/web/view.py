@@ -56,8 +56,9 @@ class View:
             "links": links_for(self.asking.permissions, self.request.url.path),
             "user": None if self.asking.way is Way.NONE else self.asking.actor.name,
             "notice": notice(self.request.query_params.get("done")),
+            "search": "",
         }
-        text = rendered(template, **self._always(), **known, **data)
+        text = rendered(template, **{**self._always(), **known, **data})
         return html_response(text, self.request.headers, status=status)
 
     def fragment(self, template: str, **data: object) -> HTMLResponse:

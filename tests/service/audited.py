@@ -172,6 +172,12 @@ class Prepared:
         )
         return f"{API}/alarms/{alarm.id}"
 
+    def acknowledged(self) -> str:
+        """Return the id of an alarm that the same account has acknowledged."""
+        path = self.alarm()
+        self.client.post(f"{path}/acknowledgements")
+        return path.rpartition("/")[2]
+
     def shelved(self) -> str:
         alarm = self.alarm()
         assert self.client.put(f"{alarm}/shelving", json=SHELVED).status_code == 200

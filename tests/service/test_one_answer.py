@@ -166,7 +166,7 @@ def test_all_pages_say_it(client: httpx.Client, case: Case) -> None:
         assert "Nothing needs to be done" not in " ".join(words(motor, "#verdict .advice"))
         for said in (of_fleet, sentence):
             assert case.finding.casefold() in said.casefold()
-    shown = words(motor, "#verdict .parts li")
+    shown = words(motor, "#parts .state")
     assert any(one.startswith((str(case.state), State.FAULT)) for one in shown)
     assert (case.state is State.HEALTHY) == all(one.startswith(("healthy", "not assessed")) for one in shown)
 

@@ -6,8 +6,9 @@ import pytest
 
 from service.access.permissions import permissions_of
 from service.storage.records import Role
+from testing.service.accounts import EVERYTHING
 from testing.web.pages import address_of, is_page, page_routes, permission_for, roles_for, routes
-from testing.web.site import PHONE, Site
+from testing.web.site import DESKTOP, PHONE, Site
 
 ENLARGED = (640, 400)
 """A desktop's window at 200 %, in its own pixels."""
@@ -44,7 +45,9 @@ def test_a_page_is_accessible_in_every_light_and_size(looked_at: Site, route: st
 
 
 @each_page
-def test_tab_begins_at_the_first_link_and_the_current_page_is_in_sight(looked_at: Site, route: str) -> None:
+def test_tab_begins_at_the_first_link_and_the_menu_names_the_current_page(
+    looked_at: Site, route: str
+) -> None:
     path = path_of(looked_at, route)
     if path is None:
         return
@@ -52,7 +55,8 @@ def test_tab_begins_at_the_first_link_and_the_current_page_is_in_sight(looked_at
     page.goto(path)
     current = page.page.locator("header nav [aria-current]")
     if current.count():
-        assert current.evaluate(IS_WITHIN_WINDOW), f"{path}: where one is cannot be seen among the pages"
+        menu = page.page.locator("header .menu")
+        assert menu.inner_text() == f"☰ Menu: {current.text_content()}"
     page.page.keyboard.press("Tab")
     first = page.page.locator("a, button, input:not([type=hidden])").first
     assert first.evaluate("one => one === document.activeElement"), (
@@ -60,8 +64,38 @@ def test_tab_begins_at_the_first_link_and_the_current_page_is_in_sight(looked_at
     )
 
 
-IS_WITHIN_WINDOW = """one => { const box = one.getBoundingClientRect();
-    return box.left >= 0 && box.right <= innerWidth; }"""
+def test_all_pages_are_reached_on_a_phone_without_scripts(looked_at: Site) -> None:
+    page = looked_at.open(*EVERYTHING, screen=PHONE, javascript=False)
+    page.goto("/")
+    links = page.page.locator("header nav a")
+    reached = {}
+    for number in range(links.count()):
+        page.page.get_by_role("button", name="Menu").click()
+        link = links.nth(number)
+        reached[link.inner_text()] = True
+        link.click()
+        page.page.wait_for_load_state()
+        for other in page.page.locator("nav[aria-label=Settings] a").all():
+            assert other.is_visible()
+            reached[other.inner_text()] = True
+    expected = {"Fleet", "Alarms", "Recordings", "Relays", "Reports", "Settings", "Help", "Plant"}
+    assert reached.keys() >= expected | {"Notifications", "People", "Account"}
+
+
+def test_a_slash_leads_to_the_search_and_the_search_to_the_motor(looked_at: Site) -> None:
+    for screen in (DESKTOP, PHONE):
+        page = looked_at.open(Role.VIEWER, screen=screen)
+        page.goto("/reports")
+        page.page.keyboard.press("/")
+        page.page.keyboard.type("ball mill")
+        page.page.keyboard.press("Enter")
+        page.page.wait_for_url("**/motors/MILL-A3")
+        page.page.keyboard.press("/")
+        page.page.keyboard.type("sel710")
+        page.page.keyboard.press("Enter")
+        found = page.page.locator("main").get_by_role("link", name="B2_SEL710")
+        found.click()
+        page.page.wait_for_url("**/relays/B2_SEL710")
 
 
 @each_page

@@ -93,6 +93,40 @@ def test_filters_are_in_the_address_and_survive_a_reload(looked_at: Site) -> Non
     assert FAULTY not in motors_of(page)
 
 
+def test_motors_stand_under_their_sites_and_parts_that_are_not_assessed_are_counted(
+    looked_at: Site,
+) -> None:
+    page = looked_at.open(Role.VIEWER)
+    page.goto("/")
+    page.page.get_by_label("Group by site").check()
+    headings = page.page.locator("table.fleet tr.site")
+    expect(headings).to_have_count(2)
+    expect(headings.first).to_contain_text("FACTORY_A 3 motors, 1 fault, 2 watch")
+    page.page.wait_for_url(re.compile("group=site"))
+    silent = page.page.locator("#silent")
+    parts = int(silent.locator("summary").inner_text().split()[0])
+    silent.locator("summary").click()
+    rows = silent.locator("li").all_inner_texts()
+    assert parts == sum(int(row.split(": ")[1].split()[0]) for row in rows)
+    rotor = next(row for row in rows if row.startswith("Rotor"))
+    silent.get_by_role("link", name="Rotor").click()
+    page.page.wait_for_url(re.compile("not_assessed=rotor"))
+    assert f": {len(motors_of(page))} motors" in rotor
+
+
+def test_a_wall_screen_has_all_motors_and_follows_by_itself(site: Site) -> None:
+    page = site.open(Role.VIEWER, screen=(1920, 1080))
+    page.goto("/wall")
+    tiles = page.page.locator(".tile > a")
+    assert tiles.all_inner_texts()[0] == FAULTY
+    assert tiles.count() == 6
+    assert page.page.locator("header, nav, form").count() == 0
+    assert page.page.evaluate("document.documentElement.scrollHeight <= innerHeight")
+    until_followed(site.app, 1)
+    acknowledge_all(site.repository, FAULTY)
+    expect(tiles.first).to_have_text(WATCHED)
+
+
 def test_without_scripts_everything_can_be_read_and_filtered(looked_at: Site) -> None:
     page = looked_at.open(Role.VIEWER, javascript=False)
     page.goto("/")

@@ -130,6 +130,8 @@ def test_no_text_is_markup_on_any_page(hostile: Site, route: str) -> None:
         "",
         f"?text={'%3Cscript%3Ewindow.harmed%3D1%3C%2Fscript%3E'}&site=%22%3E%3Cimg%20src%3Dx%3E",
     ):
+        if route == "/search":  # it leads to the motor of that name, which no plant's file may have
+            page.accepted.add(404)
         page.goto(path + query)
         page.page.wait_for_function("() => document.documentElement.dataset.ready === 'true'")
         assert not page.page.evaluate(HARMED), f"{path}{query} made markup of a text"

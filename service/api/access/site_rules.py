@@ -46,6 +46,7 @@ LISTS: Final = frozenset(
             for path in (
                 "/alarms",
                 "/alarms/acknowledgements",
+                "/alarms/acknowledgements/undo",
                 "/alarms/figures",
                 "/alarms/open",
                 "/deletions",
@@ -68,6 +69,7 @@ LISTS: Final = frozenset(
         "/",
         "/alarms",
         "/alarms/acknowledgements",
+        "/alarms/acknowledgements/undo",
         "/live",
         "/plant",
         "/recordings",
@@ -76,7 +78,9 @@ LISTS: Final = frozenset(
         "/reports/alarms",
         "/reports/fleet",
         "/reports/motor",
+        "/search",
         "/starts",
+        "/wall",
     }
 )
 """Paths of routes that are LISTED."""

@@ -22,10 +22,13 @@ from service.api.alarms.schemas import (
     Refusal,
     Remark,
     ShelvingRequest,
+    UndoneAcknowledgements,
+    UndoRequest,
 )
 from service.api.context import Context
 from service.api.problems import FieldError, ProblemError, WrongFieldError, problems
 from service.api.times import rfc3339
+from service.api.undo_time import UNDO_NS
 from service.storage.repository.sites import AtSite
 
 LONGEST_SHELVING_DAYS = 90
@@ -63,6 +66,30 @@ def acknowledge_alarms(context: Context, asking: Asking, wanted: Acknowledgement
         )
     return Acknowledgements(
         acknowledged=[Alarm.model_validate(alarm) for alarm in done.alarms],
+        refused=[Refusal(alarm=one, detail=why) for one, why in done.refused.items()],
+    )
+
+
+@router.post(
+    "/alarms/acknowledgements/undo",
+    responses=problems(400, 409, 413),
+    dependencies=[require(Permission.ACKNOWLEDGE)],
+)
+def undo_acknowledgements(context: Context, asking: Asking, wanted: UndoRequest) -> UndoneAcknowledgements:
+    """Have alarms call again that the same account has acknowledged in the last ten minutes.
+
+    One whose cause went meanwhile is over, and stays so. 409 where it is possible for none.
+    """
+    ids = list(dict.fromkeys(str(one) for one in wanted.alarms))
+    asking.demand_here(context.repository, AtSite.ALARM, *ids)
+    now_ns = time.time_ns()
+    done = context.repository.undo_acknowledgements(
+        ids, by=asking.actor, since_ns=now_ns - UNDO_NS, now_ns=now_ns
+    )
+    if not done.alarms:
+        raise ProblemError(HTTPStatus.CONFLICT, f"nothing was undone: {next(iter(done.refused.values()))}")
+    return UndoneAcknowledgements(
+        undone=[Alarm.model_validate(alarm) for alarm in done.alarms],
         refused=[Refusal(alarm=one, detail=why) for one, why in done.refused.items()],
     )
 

@@ -119,6 +119,19 @@ class Acknowledgements(Document):
     refused: Listed[Refusal]
 
 
+class UndoRequest(Document):
+    """Alarms whose acknowledgement was a mistake."""
+
+    alarms: Annotated[list[UUID], Field(min_length=1, max_length=MOST_AT_ONCE)]
+
+
+class UndoneAcknowledgements(Document):
+    """The alarms that call again, and those for which that was not possible."""
+
+    undone: Listed[Alarm]
+    refused: Listed[Refusal]
+
+
 class ShelvingRequest(Remark):
     """What ends the shelving: a time, or growth of the alarm's value by so much; the first of both."""
 

@@ -133,6 +133,30 @@ class MeasurementRows(Sessions):
             found(session, MotorRow, motor, "motor")
             return page_of(session, query, order, _measurement, limit=limit, after=after)
 
+    def measured_course(
+        self, motor: str, step: AveragingStep, *, from_ns: int, to_ns: int, pieces: int
+    ) -> tuple[Measurement, ...]:
+        """Return what a motor's relay measured, from_ns <= time < to_ns, as means of so many pieces of time.
+
+        Each stands at the first measurement in it; pieces without any are left out.
+        """
+        width_ns = max(1, -(-(to_ns - from_ns) // pieces))
+        first_ns = func.min(MeasurementRow.time_ns)
+        query = (
+            select(
+                first_ns,
+                func.sum(MeasurementRow.samples),
+                func.max(MeasurementRow.source),
+                *map(_of_an_interval, _COLUMNS),
+            )
+            .where(MeasurementRow.motor == motor, MeasurementRow.step_s == step.value)
+            .where(*within(MeasurementRow.time_ns, from_ns, to_ns))
+            .group_by((MeasurementRow.time_ns - from_ns) // width_ns)
+            .order_by(first_ns)
+        )
+        with self._read() as session:
+            return tuple(_measurement(*row) for row in session.execute(query))
+
 
 def insert_samples(session: Session, samples: Iterable[Sample], source: MeasurementSource) -> None:
     """Write samples at times that have none."""

@@ -11,9 +11,16 @@ from core.units import NANOSECONDS_PER_HOUR
 from service.access.permissions import Permission
 from service.api.access.requirements import require
 from service.api.alarms import people
-from service.api.alarms.schemas import MOST_AT_ONCE, AcknowledgementRequest, Remark, ShelvingRequest
+from service.api.alarms.schemas import (
+    MOST_AT_ONCE,
+    AcknowledgementRequest,
+    Remark,
+    ShelvingRequest,
+    UndoRequest,
+)
 from service.api.problems import ProblemError
 from service.api.times import rfc3339
+from service.api.undo_time import UNDO_NS
 from service.storage.errors import AlarmActionError
 from service.web.addresses import LONGEST, address, own_address
 from service.web.alarms.details import SHELVING_HOURS, alarm_details
@@ -54,8 +61,11 @@ def show_alarms(
         cursor=cursor or None,
     )
     live = live_address(view.request, "alarms")
-    found = alarm_list(view.context.repository, choice, refused=[str(one) for one in refused or ()])
-    return view.page("alarms/list.html", title="Alarms", found=found, live=live)
+    repository = view.context.repository
+    found = alarm_list(repository, choice, refused=[str(one) for one in refused or ()])
+    since_ns = view.now_ns - UNDO_NS
+    own = repository.acknowledged_by(view.asking.actor.name, since_ns=since_ns, limit=MOST_AT_ONCE)
+    return view.page("alarms/list.html", title="Alarms", found=found, own=own, live=live)
 
 
 @router.post("/alarms/acknowledgements", dependencies=ACKNOWLEDGE)
@@ -81,6 +91,16 @@ def acknowledge_alarms(
     refused = [one.alarm for one in done.refused]
     what = "acknowledged-some" if refused else "acknowledged"
     return view.done(own_address(next_, "/alarms"), what, refused=refused or None)
+
+
+@router.post("/alarms/acknowledgements/undo", dependencies=ACKNOWLEDGE)
+def undo_acknowledgements(
+    view: Looking, alarm: Annotated[list[str] | None, Form()] = None, next_: Next = None
+) -> Response:
+    """Have alarms call again that the same person has just acknowledged."""
+    wanted = document_of_form(UndoRequest, {"alarms": alarm or []})
+    people.undo_acknowledgements(view.context, view.asking, wanted)
+    return view.done(own_address(next_, "/alarms"), "acknowledgement-undone")
 
 
 @router.get("/alarms/{alarm_id}", dependencies=[require(Permission.VIEW)])

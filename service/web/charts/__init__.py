@@ -1,5 +1,5 @@
 """Charts of the pages as data; static/js/charts draws them, templates/charts/figure.html has their frame."""
 
-from service.web.charts.chart import AxisKind, Chart, Kind, Limit, Mark, Series, Table, Tone
+from service.web.charts.chart import AxisKind, Band, Chart, Kind, Limit, Mark, Series, Table, Tone
 
-__all__ = ["AxisKind", "Chart", "Kind", "Limit", "Mark", "Series", "Table", "Tone"]
+__all__ = ["AxisKind", "Band", "Chart", "Kind", "Limit", "Mark", "Series", "Table", "Tone"]

@@ -56,7 +56,8 @@ class AxisKind(StrEnum):
 class Series:
     """One quantity. Values that are None or not finite are gaps.
 
-    low, high: ends of each value's interval, or of the envelope that the value stands for.
+    low, high: ends of each value's interval, or of the envelope that the value stands for.  short: what
+    stands at the end of its line; empty for the label.
     """
 
     label: str
@@ -66,6 +67,7 @@ class Series:
     kind: Kind = Kind.LINE
     low: Values | None = None
     high: Values | None = None
+    short: str = ""
 
     def document(self) -> dict[str, object]:
         """Return the series as the script takes it."""
@@ -76,6 +78,8 @@ class Series:
             "kind": str(self.kind),
             "values": _finite(self.values),
         }
+        if self.short:
+            document["short"] = self.short
         if self.low is not None and self.high is not None:
             document |= {"low": _finite(self.low), "high": _finite(self.high)}
         return document
@@ -97,6 +101,16 @@ class Limit:
     y: float
     label: str
     tone: Tone = Tone.FAULT
+
+
+@dataclass(frozen=True, slots=True)
+class Band:
+    """Values of y between which nothing is the matter, such as those that a standard allows: a ground."""
+
+    low: float
+    high: float
+    label: str
+    tone: Tone = Tone.MUTED
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,6 +148,7 @@ class Chart:
     y_to: float | None = None
     marks: Sequence[Mark] = ()
     limits: Sequence[Limit] = ()
+    bands: Sequence[Band] = ()
     sync: str = ""
     height: int = 240
     in_rows: bool = False
@@ -154,6 +169,10 @@ class Chart:
             "series": [one.document() for one in self.series],
             "marks": [{"x": one.x, "label": one.label, "tone": str(one.tone)} for one in self.marks],
             "limits": [{"y": one.y, "label": one.label, "tone": str(one.tone)} for one in self.limits],
+            "bands": [
+                {"low": one.low, "high": one.high, "label": one.label, "tone": str(one.tone)}
+                for one in self.bands
+            ],
             "sync": self.sync,
             "height": self.height,
             "rows": self.in_rows,
@@ -177,12 +196,17 @@ class Chart:
 
     @property
     def lines_told(self) -> tuple[str, ...]:
-        """What lies over the series, in words: limits from above, then marks in their order."""
+        """What lies over the series, in words: limits from above, bands, then marks in their order."""
         unit = f" {self.y_unit}" if self.y_unit else ""
         limits = sorted(self.limits, key=lambda one: one.y, reverse=True)
         marks = sorted(self.marks, key=lambda one: one.x)
         return (
             *(f"{one.label}, at {plain(one.y, DIGITS, with_commas=False)}{unit}" for one in limits),
+            *(
+                f"{one.label}, {plain(one.low, DIGITS, with_commas=False)} to "
+                f"{plain(one.high, DIGITS, with_commas=False)}{unit}"
+                for one in self.bands
+            ),
             *(f"{one.label}, at {self._place(one.x)}" for one in marks),
         )
 

@@ -38,7 +38,7 @@ class FleetRow:
     before.  growth_per_day, days: None where there is no trend; days: to the level `limit`, counted from the
     latest record.  reference: levels between which no change would be seen.  advice: empty where nothing is
     to be done.  doubt: why a healthy motor may not be; empty where nothing speaks against it.
-    version: of its condition.
+    not_assessed: parts that no record could judge.  version: of its condition.
     """
 
     name: str
@@ -63,6 +63,7 @@ class FleetRow:
     stood_ns: int | None
     advice: str
     doubt: str
+    not_assessed: tuple[str, ...]
     alarms: CallingAlarms | None
     reference: Interval | None
     version: int
@@ -146,6 +147,7 @@ def row_of(motor: FleetMotor, now_ns: int, stale_after_days: float | None) -> Fl
         stood_ns=entry.stood_ns,
         advice=_advice(condition, states[0], why, motor.motor.parameters_source),
         doubt=doubt(condition, None if figures is None else figures.verdict),
+        not_assessed=tuple(one.part.words for one in condition.parts if one.state is State.UNKNOWN),
         alarms=motor.alarms,
         reference=_reference(condition),
         version=entry.version,
@@ -194,3 +196,8 @@ def counts(rows: Iterable[FleetRow]) -> Mapping[FleetState, int]:
     """Return how many motors are in each state; each counts once, in the one that matters most."""
     number = Counter(row.state for row in rows)
     return {state: number[state] for state in FleetState}
+
+
+def parts_not_assessed(rows: Iterable[FleetRow]) -> Mapping[str, int]:
+    """Return of how many motors each part is not assessed, the most first; parts of none are left out."""
+    return dict(Counter(part for row in rows for part in row.not_assessed).most_common())

@@ -15,8 +15,8 @@ from service.api.inspections.schemas import InspectionRequest, InspectionWithdra
 from service.api.limits.body_limits import UPLOAD_TYPE, BodyRule
 from service.api.recordings.routes import FormLimits
 from service.storage.repository.inspections import MOST_PICTURES
-from service.web.addresses import address
 from service.web.forms import document_of_form
+from service.web.motor.page import LOGBOOK, tab_address
 from service.web.motor.routes import utc
 from service.web.view import Looking
 
@@ -58,7 +58,7 @@ def tell_inspection(
     contents = [one.file.read() for one in pictures or ()]
     given = tuple(picture_of(one, "body.pictures") for one in contents if one)
     keep_inspection(view.context, name, wanted, given, view.asking.actor)
-    return view.done(address("/motors", name), "inspection-kept")
+    return view.done(tab_address(name, LOGBOOK), "inspection-kept")
 
 
 @router.post(
@@ -70,4 +70,4 @@ def withdraw_inspection(view: Looking, name: Name, inspection_id: UUID, reason: 
     view.context.repository.withdraw_inspection(
         name, str(inspection_id), by=view.asking.actor, reason=wanted.reason, now_ns=view.now_ns
     )
-    return view.done(address("/motors", name), "inspection-withdrawn")
+    return view.done(tab_address(name, LOGBOOK), "inspection-withdrawn")

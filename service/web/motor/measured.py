@@ -5,10 +5,13 @@ from dataclasses import dataclass
 from typing import Final
 
 from core.quantity_text import with_unit
+from core.units import NANOSECONDS_PER_DAY
 from service.plant import MeteredQuantity
 from service.storage.records import Measurement
 
 DIGITS: Final = 4
+MEASURED_WITHIN_NS: Final = 30 * NANOSECONDS_PER_DAY
+"""What was measured longer ago is not shown."""
 WORDS: Final = {
     MeteredQuantity.POWER: "Power",
     MeteredQuantity.REACTIVE_POWER: "Reactive power",

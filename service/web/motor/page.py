@@ -1,87 +1,101 @@
-"""All that the page of a motor shows, read from the repository."""
+"""What every page of a motor has at its top: its name, its state, its tabs, and the time that charts show."""
 
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from http import HTTPStatus
 from typing import Final
 
-from core.diagnosis.verdict import Verdict
-from core.machines.parameters import MachineKind
-from core.units import NANOSECONDS_PER_DAY
-from service.api.conditions.documents import condition_document, until_stop_document
+from service.api.conditions.documents import condition_document
 from service.api.conditions.schemas import Condition
 from service.api.context import ApiContext
+from service.api.problems import ProblemError
 from service.condition.staleness import stale_after_ns
-from service.storage import Repository
-from service.storage.records import (
-    Alarm,
-    ConditionChange,
-    ConditionEvent,
-    Inspection,
-    MotorHealth,
-    RecordingEntry,
-    RecordingRequest,
-)
-from service.web.charts import Chart
-from service.web.motor.answer import AnswerSection, answer_section
-from service.web.motor.drawings import MotorDrawings, motor_drawings
-from service.web.motor.marks import trend_marks
-from service.web.motor.measured import MeasuredValues, measured_values
+from service.storage.records import MotorHealth
+from service.web.addresses import address
 from service.web.motor.nameplate import KnownMotor, known_motor
-from service.web.motor.parameters import ParametersSection, parameters_section
-from service.web.motor.rotor import RotorSection, rotor_section
-from service.web.motor.stop import StopLine, stop_line
-from service.web.motor.supply import SupplySection, supply_section
-from service.web.motor.swings import SwingSection, swing_section
-from service.web.motor.trend import SPANS, TrendSpan, told, trend_chart
+from service.web.motor.time_range import SPANS, USUAL, TimeRange, span_of, time_range
 from service.web.motor.verdict import MotorVerdict, motor_verdict
-
-MOST_ALARMS: Final = 10
-MOST_NOTES: Final = 20
-MOST_CHANGES: Final = 10
-MOST_INSPECTIONS: Final = 10
-MOST_RECORDINGS: Final = 8
-MOST_REQUESTS: Final = 3
-MEASURED_WITHIN_NS: Final = 30 * NANOSECONDS_PER_DAY
+from service.web.navigation import Link
 
 
 @dataclass(frozen=True, slots=True)
-class MotorTrend:
-    """The trend of the time that was chosen. chart: None without a record in it; told: what it shows."""
+class Tab:
+    """A page of a motor. key: the last part of its address, empty for the first.  is_of_time: has charts."""
 
-    span: TrendSpan
-    chart: Chart | None
-    told: str
+    key: str
+    words: str
+    is_of_time: bool = True
+
+
+OVERVIEW: Final = Tab("", "Overview")
+STATOR: Final = Tab("stator", "Stator")
+ROTOR: Final = Tab("rotor", "Rotor")
+SUPPLY: Final = Tab("supply", "Supply")
+LOAD: Final = Tab("load", "Load and heat")
+STARTS: Final = Tab("starts", "Starts", is_of_time=False)
+RECORDINGS: Final = Tab("recordings", "Recordings", is_of_time=False)
+LOGBOOK: Final = Tab("logbook", "Logbook", is_of_time=False)
+NAMEPLATE: Final = Tab("nameplate", "Nameplate")
+TABS: Final = (OVERVIEW, STATOR, ROTOR, SUPPLY, LOAD, STARTS, RECORDINGS, LOGBOOK, NAMEPLATE)
+_TABS: Final = {one.key: one for one in TABS}
 
 
 @dataclass(frozen=True, slots=True)
-class MotorPage:
-    """What the page shows. known: None before a service has read the motors file; no drawings then."""
+class MotorHead:
+    """What is at the top. known: None before a service has read the motors file.
 
+    oldest_ns: age beyond which its latest record is too old.
+    """
+
+    name: str
+    tab: Tab
+    shown: TimeRange
     health: MotorHealth
     condition: Condition
     verdict: MotorVerdict
-    stop: StopLine | None
-    trend: MotorTrend
-    answer: AnswerSection
-    rotor: RotorSection
-    supply: SupplySection
-    swings: SwingSection
-    parameters: ParametersSection
     known: KnownMotor | None
-    drawings: MotorDrawings | None
-    measured: MeasuredValues | None
-    alarms: Sequence[Alarm]
-    notes: Sequence[ConditionEvent]
-    inspections: Sequence[Inspection]
-    more_notes: bool
-    changes: Sequence[ConditionChange]
-    recordings: Sequence[RecordingEntry]
-    verdicts: Mapping[str, Verdict]
-    requests: Sequence[RecordingRequest]
+    oldest_ns: int
+
+    @property
+    def tabs(self) -> list[Link]:
+        """Return the links to all tabs; the time that is shown goes along."""
+        return [Link(self.at(one), one.words, one is self.tab) for one in TABS]
+
+    @property
+    def spans(self) -> list[Link]:
+        """Return the links to this tab over other times."""
+        span = self.shown.span
+        return [Link(self.at(self.tab, one.key), one.words, one is span) for one in SPANS]
+
+    @staticmethod
+    def tab_of(key: str) -> Tab:
+        """Return a tab by the last part of its address. Raises LookupError."""
+        return _TABS[key]
+
+    @property
+    def here(self) -> str:
+        """Return the address of this tab, without the time that is shown."""
+        return tab_address(self.name, self.tab)
+
+    def at(self, tab: Tab, days: str | None = None) -> str:
+        """Return the address of a tab, over the time that is shown or another one."""
+        key = self.shown.span.key if days is None else days
+        return address(tab_address(self.name, tab), days=None if key == USUAL else key)
 
 
-def motor_page(context: ApiContext, name: str, span: TrendSpan, now_ns: int) -> MotorPage:
-    """Read what the page of a motor shows. Raises NotFoundError."""
+def tab_address(motor: str, tab: Tab) -> str:
+    """Return the address of a tab over the usual time."""
+    return address("/motors", motor, *([tab.key] if tab.key else []))
+
+
+def motor_head(context: ApiContext, name: str, tab: Tab, days: str, now_ns: int) -> MotorHead:
+    """Read what is at the top. Raises NotFoundError, and ProblemError (422) for an unknown time."""
+    try:
+        span = span_of(days)
+    except LookupError as error:
+        expected = ", ".join(one.key for one in SPANS)
+        raise ProblemError(
+            HTTPStatus.UNPROCESSABLE_ENTITY, f"query.days: expected one of {expected}, found {days!r}"
+        ) from error
     repository = context.repository
     health = repository.health(name)
     oldest_ns = stale_after_ns(health.motor.schedule, context.settings.stale_after_days)
@@ -89,72 +103,14 @@ def motor_page(context: ApiContext, name: str, span: TrendSpan, now_ns: int) -> 
         health.condition, now_ns, oldest_ns, health.diagnosis, source=health.motor.parameters_source
     )
     known = known_motor(name, repository.motor_versions(name))
-    notes = repository.events(name, limit=MOST_NOTES)
-    recordings = repository.recordings(motor=name, limit=MOST_RECORDINGS).items
-    return MotorPage(
+    limit = None if known is None else known.motor.limits.fault_level
+    return MotorHead(
+        name=name,
+        tab=tab,
+        shown=time_range(repository, name, span, now_ns),
         health=health,
         condition=condition,
-        verdict=motor_verdict(
-            health, condition, now_ns, oldest_ns, None if known is None else known.motor.limits.fault_level
-        ),
-        stop=stop_line(until_stop_document(repository, health.condition, now_ns, oldest_ns), now_ns),
-        trend=_trend(repository, name, span, condition, known, now_ns),
-        rotor=rotor_section(repository, name, MachineKind.CAGE if known is None else known.motor.kind),
-        answer=answer_section(repository, name),
-        supply=supply_section(repository, name),
-        swings=swing_section(repository, name),
-        parameters=parameters_section(repository, name),
+        verdict=motor_verdict(health, condition, now_ns, oldest_ns, limit),
         known=known,
-        drawings=None
-        if known is None
-        else motor_drawings(repository, known.motor, condition, health.condition.since_ns, now_ns),
-        measured=measured_values(repository.latest_sample(name, since_ns=now_ns - MEASURED_WITHIN_NS)),
-        alarms=repository.open_alarms(motor=name, limit=MOST_ALARMS).items,
-        notes=notes.items,
-        inspections=repository.inspections(name, limit=MOST_INSPECTIONS).items,
-        more_notes=notes.next is not None,
-        changes=repository.condition_history(name, limit=MOST_CHANGES).items,
-        recordings=recordings,
-        verdicts=repository.verdicts([one.id for one in recordings]),
-        requests=repository.recording_requests(motor=name, limit=MOST_REQUESTS).items,
+        oldest_ns=oldest_ns,
     )
-
-
-def span_of(key: str) -> TrendSpan:
-    """Return the time with this key. Raises LookupError."""
-    for span in SPANS:
-        if span.key == key:
-            return span
-    raise LookupError(key)
-
-
-def _trend(
-    repository: Repository,
-    name: str,
-    span: TrendSpan,
-    condition: Condition,
-    known: KnownMotor | None,
-    now_ns: int,
-) -> MotorTrend:
-    trend = repository.thinned_trend(name, from_ns=span.from_ns(now_ns))
-    if not trend.records:
-        return MotorTrend(span, None, told(trend))
-    chart = trend_chart(
-        name,
-        trend,
-        limit=None if known is None else known.motor.limits.fault_level,
-        ahead=condition.forecast.limit,
-        detectable=condition.reference.detectable,
-        marks=trend_marks(repository, name, trend.from_ns, now_ns),
-        from_ns=_begin(repository, name, span, now_ns),
-        to_ns=now_ns,
-    )
-    return MotorTrend(span, chart, told(trend))
-
-
-def _begin(repository: Repository, name: str, span: TrendSpan, now_ns: int) -> int | None:
-    """Return where the time shown begins; None for the first record in it, before which there is none."""
-    from_ns = span.from_ns(now_ns)
-    if from_ns is None or not repository.latest_records(name, limit=1, before_ns=from_ns):
-        return None
-    return from_ns

@@ -6,12 +6,13 @@ from typing import Final
 
 from core.tracking.advice import NOTHING_TO_DO, drift_advice, drift_reason
 from core.tracking.finding import ParameterName, TrackedParameter, TrackedParameters, TrackingState
-from core.units import NANOSECONDS_PER_SECOND
 from service.condition.tracking import COLUMNS
 from service.storage import Repository
 from service.storage.records import TrackedPoint
 from service.web.charts import Chart, Kind, Series, Tone
 from service.web.charts.chart import AxisKind
+from service.web.motor.time_range import TimeRange, in_seconds
+from service.web.motor.trend import HEIGHT, SYNC
 
 MOST_RECORDS: Final = 400
 """The latest records that the charts show."""
@@ -36,20 +37,20 @@ class ParametersSection:
     charts: Sequence[Chart]
 
 
-def parameters_section(repository: Repository, motor: str) -> ParametersSection:
+def parameters_section(repository: Repository, motor: str, shown: TimeRange) -> ParametersSection:
     """Read what the page says of a motor's parameters. Raises NotFoundError."""
     found = repository.tracked_parameters(motor)
     if found is None:
         return ParametersSection(None, "unknown", "No record tells of the parameters yet.", NOTHING_TO_DO, ())
     points = repository.latest_tracked_points(motor, limit=MOST_RECORDS)
-    known = [one for one in points if one.stator_resistance_change is not None]
+    known = [one for one in points if one.stator_resistance_change is not None and shown.has(one.time_ns)]
     drifting = found.state is TrackingState.DRIFTING
     return ParametersSection(
         found=found,
         state=STATES[found.state],
         sentence=_sentence(found),
         advice=drift_advice(found.causes) if drifting else NOTHING_TO_DO,
-        charts=[_chart(motor, one, known) for one in found.parameters] if known else (),
+        charts=[_chart(motor, one, known, shown) for one in found.parameters] if known else (),
     )
 
 
@@ -62,7 +63,9 @@ def _sentence(found: TrackedParameters) -> str:
     return f"As in the first records: {', '.join(steady)}."
 
 
-def _chart(motor: str, parameter: TrackedParameter, points: Sequence[TrackedPoint]) -> Chart:
+def _chart(
+    motor: str, parameter: TrackedParameter, points: Sequence[TrackedPoint], shown: TimeRange
+) -> Chart:
     """Return the change of one parameter over time, with its interval and the reference."""
     column, words = COLUMNS[ParameterName(parameter.name)], parameter.name.words
     changes = [_percent(getattr(one, f"{column}_change")) for one in points]
@@ -75,7 +78,9 @@ def _chart(motor: str, parameter: TrackedParameter, points: Sequence[TrackedPoin
         y_label="change",
         y_unit="%",
         x_kind=AxisKind.TIME,
-        x=[round(one.time_ns / NANOSECONDS_PER_SECOND, 3) for one in points],
+        x=[in_seconds(one.time_ns) for one in points],
+        x_from=shown.x_from,
+        x_to=shown.x_to,
         series=[
             Series(
                 "change, 95 % interval",
@@ -89,7 +94,8 @@ def _chart(motor: str, parameter: TrackedParameter, points: Sequence[TrackedPoin
             Series("first records", [0.0] * len(points), "%", Tone.MUTED, Kind.DASHES),
         ],
         summary=f"{parameter.state}: {'; '.join(parameter.reasons) or 'as in the first records'}.",
-        sync="parameters",
+        sync=SYNC,
+        height=HEIGHT,
     )
 
 

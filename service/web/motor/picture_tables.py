@@ -23,7 +23,6 @@ class PictureTables:
     asymmetry: Table
     load: Table
     supply: Table
-    profile: Table
 
 
 def asymmetry_table(found: Asymmetry) -> Table:

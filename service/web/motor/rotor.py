@@ -9,13 +9,14 @@ from core.rotor.advice import rotor_advice
 from core.rotor.finding import RotorState
 from core.rotor.judgement import FAULT_DB, WATCH_DB
 from core.rotor.trend import RotorCondition
-from core.units import NANOSECONDS_PER_SECOND
 from service.api.rotor_and_supply.start_agreement import StartAgreement, start_agreement
 from service.client.rotor_and_supply import STATES, decibels, sideband_words
 from service.storage import Repository
 from service.storage.records import RotorEntry
 from service.web.charts import Chart, Kind, Limit, Series, Tone
 from service.web.charts.chart import AxisKind
+from service.web.motor.time_range import TimeRange, in_seconds
+from service.web.motor.trend import SYNC, TAB_HEIGHT
 
 MOST_RECORDS: Final = 400
 """The latest records that the charts show."""
@@ -68,10 +69,11 @@ class RotorSection:
     silent: int
 
 
-def rotor_section(repository: Repository, motor: str, kind: MachineKind) -> RotorSection:
+def rotor_section(repository: Repository, motor: str, kind: MachineKind, shown: TimeRange) -> RotorSection:
     """Read what the page says of a motor's rotor, a cage or a winding. Raises NotFoundError."""
     entries = repository.latest_rotor_findings(motor, limit=MOST_RECORDS)
     telling = [one for one in entries if one.finding.severity_dB is not None]
+    drawn = [one for one in telling if shown.has(one.time_ns)]
     latest = telling[-1] if telling else (entries[-1] if entries else None)
     condition = repository.rotor_condition(motor)
     return RotorSection(
@@ -83,8 +85,8 @@ def rotor_section(repository: Repository, motor: str, kind: MachineKind) -> Roto
         advice=rotor_advice(condition.state),
         sidebands=None if latest is None else sideband_words(latest.finding),
         start=start_agreement(repository, motor),
-        severity_chart=_severity_chart(motor, telling) if telling else None,
-        sideband_chart=_sideband_chart(motor, telling) if telling else None,
+        severity_chart=_severity_chart(motor, drawn, shown) if drawn else None,
+        sideband_chart=_sideband_chart(motor, drawn, shown) if drawn else None,
         records=len(entries),
         silent=len(entries) - len(telling),
     )
@@ -105,7 +107,7 @@ def _sentence(condition: RotorCondition, part: RotorPart) -> str:
     return f"{says} {level}{changed}."
 
 
-def _severity_chart(motor: str, entries: Sequence[RotorEntry]) -> Chart:
+def _severity_chart(motor: str, entries: Sequence[RotorEntry], shown: TimeRange) -> Chart:
     """Return the severity over time, of each tenth of the load by itself, with what would have been seen."""
     severities = [_drawn(one.finding.severity_dB) for one in entries]
     intervals = [one.finding.severity_dB_ci95 for one in entries]
@@ -159,11 +161,14 @@ def _severity_chart(motor: str, entries: Sequence[RotorEntry]) -> Chart:
         summary=f"{len(entries)} record{'s' if len(entries) > 1 else ''}, by tenths of the rated load. "
         f"Above {WATCH_DB:g} dB a record is on watch. It shows a fault where its whole interval lies above "
         f"{FAULT_DB:g} dB.",
-        sync="rotor",
+        x_from=shown.x_from,
+        x_to=shown.x_to,
+        sync=SYNC,
+        height=TAB_HEIGHT,
     )
 
 
-def _sideband_chart(motor: str, entries: Sequence[RotorEntry]) -> Chart:
+def _sideband_chart(motor: str, entries: Sequence[RotorEntry], shown: TimeRange) -> Chart:
     lower = [_drawn(one.finding.lower_sideband_dB) for one in entries]
     upper = [_drawn(one.finding.upper_sideband_dB) for one in entries]
     swing = [_drawn(one.finding.load_oscillation_dB) for one in entries]
@@ -176,17 +181,27 @@ def _sideband_chart(motor: str, entries: Sequence[RotorEntry]) -> Chart:
         x_kind=AxisKind.TIME,
         x=_times(entries),
         series=[
-            Series("lower, (1 - 2s) f", lower, "dB", Tone.INK, Kind.LINE),
-            Series("upper, (1 + 2s) f", upper, "dB", Tone.ACCENT, Kind.LINE),
-            Series("swing of the load's torque, over the rated one", swing, "dB", Tone.MUTED, Kind.THIN),
+            Series("lower, (1 - 2s) f", lower, "dB", Tone.INK, Kind.LINE, short="lower"),
+            Series("upper, (1 + 2s) f", upper, "dB", Tone.ACCENT, Kind.LINE, short="upper"),
+            Series(
+                "swing of the load's torque, over the rated one",
+                swing,
+                "dB",
+                Tone.MUTED,
+                Kind.THIN,
+                short="load",
+            ),
         ],
         summary="As measured: load and inertia are still in them.",
-        sync="rotor",
+        x_from=shown.x_from,
+        x_to=shown.x_to,
+        sync=SYNC,
+        height=TAB_HEIGHT,
     )
 
 
 def _times(entries: Sequence[RotorEntry]) -> list[float]:
-    return [round(one.time_ns / NANOSECONDS_PER_SECOND, 3) for one in entries]
+    return [in_seconds(one.time_ns) for one in entries]
 
 
 def _drawn(value_dB: float | None) -> float | None:

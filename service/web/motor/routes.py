@@ -1,4 +1,4 @@
-"""The page of a motor, the figures behind its trend, and the forms on it, which do what the API does."""
+"""The figures behind a motor's trend, and the forms on its pages, which do what the API does."""
 
 from http import HTTPStatus
 from typing import Annotated, Final
@@ -9,26 +9,22 @@ from fastapi.responses import JSONResponse
 from starlette.responses import Response
 
 from core.condition.events import EventKind
-from core.condition.kinds import Kind
 from core.units import NANOSECONDS_PER_SECOND
 from service.access.permissions import Permission
 from service.api.access.requirements import require
 from service.api.conditions.notes import keep_note
 from service.api.conditions.planned_stops import keep_stop
 from service.api.conditions.schemas import NoteRequest, RestartRequest, StopRequest, Withdrawal
+from service.api.conditions.undo import undone
 from service.api.document import Name
 from service.api.problems import ProblemError
 from service.api.recordings.diagnoses import queue_diagnosis
 from service.api.recordings.diagnosis_schemas import DiagnosisRequest
 from service.storage.records import StopOf
 from service.storage.repository.sites import AtSite
-from service.storage.states import InspectionOutcome
-from service.web.addresses import address
 from service.web.forms import document_of_form
-from service.web.live.routes import live_address
-from service.web.motor.page import motor_page, span_of
-from service.web.motor.trend import SPANS, USUAL, trend_chart
-from service.web.motor.undo import UNDO_MINUTES, latest_to_undo, may_undo
+from service.web.motor.page import LOGBOOK, OVERVIEW, RECORDINGS, Tab, tab_address
+from service.web.motor.trend import trend_chart
 from service.web.view import Looking, View
 from service.web.words import phrase
 
@@ -39,33 +35,6 @@ LATEST_S: Final = 9.2e9
 
 Seconds = Annotated[float, Query(ge=0.0, le=LATEST_S, allow_inf_nan=False)]
 Text = Annotated[str, Form(max_length=2000)]
-
-
-@router.get("/motors/{name}", dependencies=[require(Permission.VIEW)])
-def show_motor(view: Looking, name: Name, days: Annotated[str, Query(max_length=10)] = USUAL) -> Response:
-    """Show a motor: what is wrong with it, how that is known, and what can be done."""
-    try:
-        span = span_of(days)
-    except LookupError as error:
-        known = ", ".join(one.key for one in SPANS)
-        raise ProblemError(
-            HTTPStatus.UNPROCESSABLE_ENTITY, f"query.days: expected one of {known}, found {days!r}"
-        ) from error
-    live = live_address(view.request, f"motor:{name}", "alarms")
-    page = motor_page(view.context, name, span, view.now_ns)
-    return view.page(
-        "motor/page.html",
-        title=name,
-        page=page,
-        spans=SPANS,
-        live=live,
-        here=address("/motors", name),
-        kinds=_kinds(view),
-        told_kinds=list(Kind),
-        outcomes=list(InspectionOutcome),
-        long_record_s=view.context.settings.long_record_s,
-        undo=latest_to_undo(page.notes, view.asking.actor.name, view.now_ns),
-    )
 
 
 @router.get("/motors/{name}/trend", dependencies=[require(Permission.VIEW)])
@@ -100,7 +69,7 @@ def record_motor(
         most_open=context.settings.max_open_requests,
         seconds=seconds,
     )
-    return _done(view, name, "recording-requested")
+    return _done(view, name, "recording-requested", RECORDINGS)
 
 
 @router.post("/motors/{name}/diagnoses", dependencies=[require(Permission.RECORDINGS)])
@@ -108,7 +77,7 @@ def diagnose_again(view: Looking, name: Name, recording: Annotated[UUID, Form()]
     """Diagnose a recording again; its motor's condition follows."""
     view.asking.demand_here(view.context.repository, AtSite.RECORDING, str(recording))
     queue_diagnosis(view.context, view.asking.actor, str(recording), DiagnosisRequest())
-    return _done(view, name, "diagnosis-requested")
+    return _done(view, name, "diagnosis-requested", RECORDINGS)
 
 
 @router.post("/motors/{name}/reference", dependencies=[require(Permission.CONFIGURE)])
@@ -117,7 +86,7 @@ def accept_as_reference(view: Looking, name: Name, reason: Text = "") -> Respons
     wanted = document_of_form(RestartRequest, {"reason": reason})
     kind = EventKind.REFERENCE_RESTARTED
     keep_note(view.context, name, kind, wanted.reason, view.asking.actor, None, view.now_ns)
-    return _done(view, name, "reference-restarted")
+    return _done(view, name, "reference-restarted", LOGBOOK)
 
 
 @router.post("/motors/{name}/notes", dependencies=[require(Permission.NOTE)])
@@ -140,7 +109,7 @@ def write_note(
                 "until new records show it again. Tick 'Restart assessment', or write a note",
             )
     keep_note(view.context, name, wanted.kind, wanted.text, view.asking.actor, None, wanted.time)
-    return _done(view, name, "note-kept")
+    return _done(view, name, "note-kept", LOGBOOK)
 
 
 @router.post("/motors/{name}/notes/{note_id}/withdrawal", dependencies=[require(Permission.CONFIGURE)])
@@ -151,26 +120,14 @@ def withdraw_note(view: Looking, name: Name, note_id: UUID, reason: Text = "") -
         name, str(note_id), by=view.asking.actor, reason=wanted.reason, now_ns=view.now_ns
     )
     view.context.on_new_job()
-    return _done(view, name, "note-withdrawn")
+    return _done(view, name, "note-withdrawn", LOGBOOK)
 
 
 @router.post("/motors/{name}/notes/{note_id}/undo", dependencies=[require(Permission.CONFIGURE)])
 def undo_note(view: Looking, name: Name, note_id: UUID) -> Response:
     """Undo what the same person has just done: withdraw a note, or keep one again that was withdrawn."""
-    note, by = view.context.repository.event(name, str(note_id)), view.asking.actor
-    if not may_undo(note, by.name, view.now_ns):
-        raise ProblemError(
-            HTTPStatus.CONFLICT,
-            f"expected a note that you wrote or retracted in the last {UNDO_MINUTES} minutes: retract it "
-            "with a reason, or write it again",
-        )
-    if note.withdrawn_ns is None:
-        reason = f"undone within {UNDO_MINUTES} minutes"
-        view.context.repository.withdraw_event(name, note.id, by=by, reason=reason, now_ns=view.now_ns)
-        view.context.on_new_job()
-    else:
-        keep_note(view.context, name, note.kind, note.reason, by, note.on_behalf_of, note.time_ns)
-    return _done(view, name, "undone")
+    undone(view.context, name, str(note_id), view.asking.actor, view.now_ns)
+    return _done(view, name, "undone", LOGBOOK)
 
 
 @router.post("/motors/{name}/planned-stop", dependencies=[require(Permission.NOTE)])
@@ -183,14 +140,14 @@ def plan_stop(
     """Plan when the motor, or its whole site, stops next."""
     wanted = document_of_form(StopRequest, {"time": utc(time)})
     keep_stop(view.context, of, _named(view, name, of), wanted.time, view.asking.actor)
-    return _done(view, name, "stop-planned")
+    return _done(view, name, "stop-planned", OVERVIEW)
 
 
 @router.post("/motors/{name}/planned-stop/cancellation", dependencies=[require(Permission.NOTE)])
 def cancel_stop(view: Looking, name: Name, of: Annotated[StopOf, Form()] = StopOf.MOTOR) -> Response:
     """Drop the plan of a stop, of the motor or of its site."""
     keep_stop(view.context, of, _named(view, name, of), None, view.asking.actor)
-    return _done(view, name, "stop-cancelled")
+    return _done(view, name, "stop-cancelled", OVERVIEW)
 
 
 def _named(view: View, motor: str, of: StopOf) -> str:
@@ -206,13 +163,6 @@ def utc(text: str) -> str:
     return f"{text}Z" if has_seconds else f"{text}:00Z"
 
 
-def _kinds(view: View) -> list[EventKind]:
-    """Return what somebody may write into the logbook; what the file tells, the service notes by itself."""
-    if not view.may(Permission.CONFIGURE):
-        return [EventKind.NOTE]
-    left_out = (EventKind.PARAMETERS_EDITED, EventKind.REFERENCE_RESTARTED)
-    return [EventKind.NOTE, *(kind for kind in EventKind if kind not in (*left_out, EventKind.NOTE))]
-
-
-def _done(view: View, name: str, what: str) -> Response:
-    return view.done(address("/motors", name), what)
+def _done(view: View, name: str, what: str, tab: Tab) -> Response:
+    """Return the way to the tab that shows what became of a form."""
+    return view.done(tab_address(name, tab), what)

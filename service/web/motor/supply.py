@@ -4,12 +4,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from core.units import NANOSECONDS_PER_SECOND
 from service.client.rotor_and_supply import supply_words
 from service.storage import Repository
 from service.storage.records import SupplyEntry
-from service.web.charts import Chart, Kind, Series, Tone
+from service.web.charts import Band, Chart, Kind, Limit, Series, Tone
 from service.web.charts.chart import AxisKind
+from service.web.motor.time_range import TimeRange, in_seconds
+from service.web.motor.trend import SYNC, TAB_HEIGHT
 
 MOST_RECORDS: Final = 400
 """The latest records that the chart shows."""
@@ -27,22 +28,30 @@ class SupplySection:
     chart: Chart | None
 
 
-def supply_section(repository: Repository, motor: str) -> SupplySection:
+def supply_section(repository: Repository, motor: str, shown: TimeRange) -> SupplySection:
     """Read what the page says of a motor's supply."""
     entries = repository.latest_supply(motor, limit=MOST_RECORDS)
     if not entries:
         return SupplySection(None, (), (), None)
     figures = entries[-1].figures
-    return SupplySection(entries[-1], supply_words(figures), figures.reasons, _chart(motor, entries))
+    return SupplySection(entries[-1], supply_words(figures), figures.reasons, _chart(motor, entries, shown))
 
 
-def _chart(motor: str, entries: Sequence[SupplyEntry]) -> Chart:
+def _chart(motor: str, every: Sequence[SupplyEntry], shown: TimeRange) -> Chart | None:
+    entries = [one for one in every if shown.has(one.time_ns)]
+    if not entries:
+        return None
     of_each = [one.figures for one in entries]
     lines = (
-        ("voltage beside the rated one", [one.voltage_deviation for one in of_each], Tone.INK),
-        ("unbalance of the voltages (NEMA)", [one.voltage_unbalance_nema for one in of_each], Tone.ACCENT),
-        ("distortion of the voltage", [one.thd_voltage for one in of_each], Tone.MODEL),
-        ("unbalance of the currents", [one.current_unbalance for one in of_each], Tone.MUTED),
+        ("voltage beside the rated one", "voltage", [one.voltage_deviation for one in of_each], Tone.INK),
+        (
+            "unbalance of the voltages (NEMA)",
+            "V unbalance",
+            [one.voltage_unbalance_nema for one in of_each],
+            Tone.ACCENT,
+        ),
+        ("distortion of the voltage", "THD", [one.thd_voltage for one in of_each], Tone.MODEL),
+        ("unbalance of the currents", "I unbalance", [one.current_unbalance for one in of_each], Tone.MUTED),
     )
     return Chart(
         key="supply",
@@ -51,11 +60,17 @@ def _chart(motor: str, entries: Sequence[SupplyEntry]) -> Chart:
         y_label="share",
         y_unit="%",
         x_kind=AxisKind.TIME,
-        x=[round(one.time_ns / NANOSECONDS_PER_SECOND, 3) for one in entries],
+        x=[in_seconds(one.time_ns) for one in entries],
         series=[
-            Series(label, [_percent(value) for value in values], "%", tone, Kind.LINE)
-            for label, values, tone in lines
+            Series(label, [_percent(value) for value in values], "%", tone, Kind.LINE, short=short)
+            for label, short, values, tone in lines
         ],
+        bands=[Band(-10.0, 10.0, "voltage allowed (NEMA MG-1)")],
+        limits=[Limit(1.0, "unbalance: derate from here on", Tone.WATCH)],
+        x_from=shown.x_from,
+        x_to=shown.x_to,
+        sync=SYNC,
+        height=TAB_HEIGHT,
         summary=f"{len(entries)} record{'s' if len(entries) > 1 else ''}.",
     )
 

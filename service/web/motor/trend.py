@@ -1,53 +1,29 @@
 """The fault level of a motor over time as a chart: levels, intervals, limits, and what happened meanwhile."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Final
 
 from core.condition.kinds import State
-from core.units import NANOSECONDS_PER_DAY, NANOSECONDS_PER_SECOND
+from core.units import NANOSECONDS_PER_SECOND
+from service.pictures.trend import TrendMark
 from service.storage.records.history import ThinnedTrend
 from service.web.charts import AxisKind, Chart, Kind, Limit, Mark, Series, Tone
+from service.web.motor.time_range import TimeRange, in_seconds
 from service.web.words import duration, percent
 
 KEY: Final = "trend"
+SYNC: Final = "motor"
+"""Charts of a motor's page have one cursor, and are looked at closer together."""
+HEIGHT: Final = 130
+"""Of the charts below that of the fault level [CSS px]."""
+TAB_HEIGHT: Final = 190
+"""Of a chart with the width of a tab, and of that of the fault level [CSS px]."""
 LEAST_TOP_PERCENT: Final = 1.0
 """The axis goes to 1 % at least, so that noise does not look like a fault."""
 FAR: Final = 2.5
 """A line of a level so many times above all others would press them flat."""
 PERCENT: Final = 100.0
 DIGITS: Final = 4
-
-
-@dataclass(frozen=True, slots=True)
-class TrendSpan:
-    """A time that can be looked at. days: None for all of it."""
-
-    key: str
-    words: str
-    days: float | None
-
-    def from_ns(self, now_ns: int) -> int | None:
-        """Return where it begins; None for the first record."""
-        return None if self.days is None else now_ns - round(self.days * NANOSECONDS_PER_DAY)
-
-
-SPANS: Final = (
-    TrendSpan("7", "7 days", 7.0),
-    TrendSpan("30", "30 days", 30.0),
-    TrendSpan("90", "90 days", 90.0),
-    TrendSpan("365", "1 year", 365.0),
-    TrendSpan("all", "all", None),
-)
-USUAL: Final = "90"
-
-
-@dataclass(frozen=True, slots=True)
-class TrendMark:
-    """Something that happened at a time."""
-
-    time_ns: int
-    label: str
 
 
 def trend_chart(
@@ -58,12 +34,11 @@ def trend_chart(
     ahead: float | None = None,
     detectable: float | None = None,
     marks: Sequence[TrendMark] = (),
-    from_ns: int | None = None,
-    to_ns: int | None = None,
+    shown: TimeRange | None = None,
 ) -> Chart:
     """Return the chart. limit: level of a fault; ahead: level that the forecast is about.
 
-    detectable: detection limit of a change.  marks: in the order of time.  from_ns, to_ns: the time that
+    detectable: detection limit of a change.  marks: in the order of time.  shown: the time that
     the axis shows, whether there are records or not.  Levels far above all others are told, and not drawn.
     """
     series = _series(trend)
@@ -91,13 +66,14 @@ def trend_chart(
         x=_times(trend),
         series=series,
         summary=told(trend) + "".join(above),
-        x_from=None if from_ns is None else _seconds(from_ns),
-        x_to=None if to_ns is None else _seconds(to_ns),
+        x_from=None if shown is None else shown.x_from,
+        x_to=None if shown is None else shown.x_to,
         y_from=0.0,
         y_to=LEAST_TOP_PERCENT,
-        marks=[Mark(_seconds(one.time_ns), one.label) for one in marks],
+        marks=[Mark(in_seconds(one.time_ns), one.words) for one in marks],
         limits=lines,
-        height=300,
+        sync=SYNC,
+        height=TAB_HEIGHT,
     )
 
 
@@ -150,12 +126,8 @@ def _where(state: State, states: Sequence[State], levels: Sequence[float | None]
 
 def _times(trend: ThinnedTrend) -> list[float]:
     if trend.points:
-        return [_seconds(one.time_ns) for one in trend.points]
-    return [_seconds((one.from_ns + one.to_ns) // 2) for one in trend.pieces]
-
-
-def _seconds(time_ns: int) -> float:
-    return round(time_ns / NANOSECONDS_PER_SECOND, 3)
+        return [in_seconds(one.time_ns) for one in trend.points]
+    return [in_seconds((one.from_ns + one.to_ns) // 2) for one in trend.pieces]
 
 
 def _percent(level: float | None) -> float | None:

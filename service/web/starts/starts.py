@@ -19,6 +19,8 @@ from service.web.pictures import markup
 OVERLAID: Final = 10
 """The latest starts that are drawn over one another."""
 MOST_LISTED: Final = 50
+MOST_OF_MOTOR: Final = 8
+"""Below the pictures of a motor's starts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +78,7 @@ def starts_of_motor(
     repository: Repository, motor: str, cursor: str | None, *, look: Look = PAGE
 ) -> StartsOfMotor:
     """Read what the page of a motor's starts shows. Raises NotFoundError, ProblemError."""
-    page = repository.starts(motor, limit=MOST_LISTED, after=decode(cursor, int, str))
+    page = repository.starts(motor, limit=MOST_OF_MOTOR, after=decode(cursor, int, str))
     first_ones = repository.start_reference(motor)
     reference = first_ones.starts[0] if first_ones.starts else None
     counts = repository.starts_within_hour(page.items)

@@ -46,6 +46,10 @@ FORMS: Changes = {
         lambda it: it.client.post("/alarms/acknowledgements", data={"alarm": it.alarm().rpartition("/")[2]}),
         "alarm-acknowledged",
     ),
+    "POST /alarms/acknowledgements/undo": (
+        lambda it: it.client.post("/alarms/acknowledgements/undo", data={"alarm": it.acknowledged()}),
+        "alarm-acknowledgement-undone",
+    ),
     "POST /alarms/{alarm_id}/acknowledgement": (
         lambda it: it.client.post(f"{_own(it.alarm())}/acknowledgement"),
         "alarm-acknowledged",

@@ -17,6 +17,7 @@ from service.web.navigation import PAGES
 from testing.service.accounts import auditor, token_of
 from tests.docs.role_tables import is_page
 from tests.service.api.serving import serving
+from tests.service.web.pages import page, words
 
 HTML = {"Accept": "text/html"}
 
@@ -57,6 +58,17 @@ def test_each_role_begins_at_a_page_it_may_see(
 
 def test_every_link_at_the_top_leads_to_a_page(client: httpx.Client, repository: Repository) -> None:
     reads = auditor(repository)
-    for path, _, needed in PAGES:
-        headers = reads if needed is Permission.AUDIT else {}
-        assert client.get(path, headers=headers).status_code == 200, path
+    for place in PAGES:
+        headers = reads if place.needed is Permission.AUDIT else {}
+        assert client.get(place.path, headers=headers).status_code == 200, place.path
+
+
+def test_settings_lead_to_the_pages_of_those_who_look(client: httpx.Client, repository: Repository) -> None:
+    document = page(client.get("/plant"))
+    assert words(document, "nav[aria-label=Pages] a") == [
+        "Fleet", "Alarms", "Recordings", "Relays", "Reports", "Settings", "Help",
+    ]  # fmt: skip
+    assert words(document, "nav[aria-label=Pages] [aria-current]") == ["Settings"]
+    assert words(document, "nav[aria-label=Settings] a") == ["Plant", "Notifications", "People", "Account"]
+    assert words(document, "nav[aria-label=Settings] [aria-current]") == ["Plant"]
+    assert not page(client.get("/")).cssselect("nav[aria-label=Settings]")

@@ -4,6 +4,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 
+from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from core.units import NANOSECONDS_PER_SECOND
@@ -14,11 +15,12 @@ from service.storage.records import Actor, Alarm
 from service.storage.repository.alarms.changes import change, locked
 from service.storage.repository.alarms.suppression import suppress_by_design
 from service.storage.repository.audit.entries import note_change
-from service.storage.repository.sessions import Sessions, found, record_of
-from service.storage.states import AlarmEvent
+from service.storage.repository.sessions import Sessions, columns_of, found, record_of
+from service.storage.states import AlarmEvent, AlarmState
 
 ACTIONS: Mapping[AlarmEvent, AuditAction] = {
     AlarmEvent.ACKNOWLEDGED: AuditAction.ALARM_ACKNOWLEDGED,
+    AlarmEvent.ACKNOWLEDGEMENT_UNDONE: AuditAction.ALARM_ACKNOWLEDGEMENT_UNDONE,
     AlarmEvent.SHELVED: AuditAction.ALARM_SHELVED,
     AlarmEvent.UNSHELVED: AuditAction.ALARM_UNSHELVED,
     AlarmEvent.TAKEN_OUT_OF_SERVICE: AuditAction.ALARM_TAKEN_OUT_OF_SERVICE,
@@ -31,7 +33,7 @@ SEEN = (AlarmEvent.ACKNOWLEDGED, AlarmEvent.SHELVED)
 
 @dataclass(frozen=True, slots=True)
 class AcknowledgedAlarms:
-    """What came of acknowledging several alarms. refused: why, by their ids."""
+    """What came of acknowledging several alarms, or of undoing that. refused: why, by their ids."""
 
     alarms: tuple[Alarm, ...]
     refused: Mapping[str, str]
@@ -62,6 +64,38 @@ class AlarmPeopleRows(Sessions):
                 except AlarmActionError as error:
                     refused[row.id] = str(error)
                 else:
+                    done.append(record_of(Alarm, row))
+        return AcknowledgedAlarms(tuple(done), refused)
+
+    def acknowledged_by(self, account: str, *, since_ns: int, limit: int) -> tuple[Alarm, ...]:
+        """Return alarms that somebody has acknowledged since a time, and that are so still, latest first."""
+        query = (
+            select(*columns_of(Alarm, AlarmRow))
+            .where(AlarmRow.state == AlarmState.ACKNOWLEDGED, AlarmRow.changed_by == account)
+            .where(AlarmRow.changed_ns >= since_ns)
+            .order_by(AlarmRow.changed_ns.desc(), AlarmRow.id)
+            .limit(limit)
+        )
+        with self._read() as session:
+            return tuple(Alarm(*row) for row in session.execute(query))
+
+    def undo_acknowledgements(
+        self, alarm_ids: Collection[str], *, by: Actor, since_ns: int, now_ns: int
+    ) -> AcknowledgedAlarms:
+        """Have alarms call again that the same person has acknowledged since a time, if they are so still."""
+        deed = _Deed(AlarmEvent.ACKNOWLEDGEMENT_UNDONE, by, now_ns, None)
+        refused = {one: str(NotFoundError("alarm", one)) for one in alarm_ids}
+        done: list[Alarm] = []
+        with self._write() as session:
+            for row in locked(session, AlarmRow.id.in_(alarm_ids)):
+                refused[row.id] = (
+                    f"alarm {row.id} was not acknowledged by {by.name} in the last minutes: "
+                    f"it is {row.state.value}, by {row.changed_by}"
+                )
+                is_own = row.changed_by == by.name and row.changed_ns >= since_ns
+                if row.state is AlarmState.ACKNOWLEDGED and is_own:
+                    _do(session, row, deed)
+                    del refused[row.id]
                     done.append(record_of(Alarm, row))
         return AcknowledgedAlarms(tuple(done), refused)
 

@@ -7,8 +7,7 @@ from typing import Any
 from sqlalchemy import func, select
 
 from core.operation import Operation
-from service.plant import AveragingStep, MeteredQuantity
-from service.storage.models import MeasurementRow, ObservationRow, RecordingRow
+from service.storage.models import ObservationRow, RecordingRow
 from service.storage.records import ConditionFigures, RecordingEntry
 from service.storage.records.history import SeenRecord
 from service.storage.repository.conditions.observations import OBSERVED, record_observation
@@ -46,25 +45,6 @@ class SeenRecordRows(Sessions):
         )
         with self._read() as session:
             return tuple(RecordingEntry(*row) for row in session.execute(query))
-
-    def power_profile(self, motor: str, *, step_W: float, from_ns: int) -> tuple[tuple[float, int], ...]:
-        """Return for how many quarters of an hour a motor took how much power, by steps of power.
-
-        Each is told by the power in the middle of its step [W]. Quarters without a value are not among them.
-        """
-        power_W = MeasurementRow.__table__.c[MeteredQuantity.POWER.value]
-        # SQLite is often built without floor(); to round what is half a step less is the same.
-        step = func.round(func.abs(power_W) / step_W - 0.4999999).label("step")
-        query = (
-            select(step, func.count())
-            .where(MeasurementRow.motor == motor, MeasurementRow.step_s == AveragingStep.QUARTER_HOUR.value)
-            .where(MeasurementRow.time_ns >= from_ns, power_W.is_not(None))
-            .group_by(step)
-            .order_by(step)
-        )
-        with self._read() as session:
-            rows = session.execute(query).all()
-        return tuple(((float(number) + 0.5) * step_W, quarters) for number, quarters in rows)
 
 
 def _seen(observed: Sequence[Any], said: Sequence[Any]) -> SeenRecord:

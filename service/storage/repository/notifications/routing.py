@@ -149,7 +149,7 @@ def _name(target: NotificationTarget, site: str | None) -> str:
 
 def _told_as(session: Session, change: AlarmChangeRow) -> NotifiedEvent | None:
     """Return as what a change of an alarm is told; None where nobody needs to know."""
-    if change.event is AlarmEvent.REOPENED:
+    if change.event in (AlarmEvent.REOPENED, AlarmEvent.ACKNOWLEDGEMENT_UNDONE):
         return NotifiedEvent.REOPENED
     if change.event is AlarmEvent.ACKNOWLEDGED:
         return NotifiedEvent.ACKNOWLEDGED

@@ -105,16 +105,19 @@ document.addEventListener("formdata", ({ target, formData }) => {
   }
 });
 
-// A plain form leads to another page: where that says it was taken, what was typed is no draft any more.
-// Of its row only: scrolling the link into view would make Tab go on from it, past the link to the content.
-function showCurrentPage() {
-  const link = document.querySelector("header nav [aria-current]");
-  const row = link?.closest("ul");
-  if (!row) return;
-  const [within, here] = [row.getBoundingClientRect(), link.getBoundingClientRect()];
-  row.scrollLeft += here.left + here.width / 2 - within.left - within.width / 2;
-}
+// `/` leads to the search from anywhere, but where somebody types.
+document.addEventListener("keydown", (event) => {
+  if (event.key !== "/" || event.ctrlKey || event.metaKey || event.altKey) return;
+  if (event.target.closest("input, select, textarea, [contenteditable]")) return;
+  const field = document.querySelector("[data-search]");
+  if (field === null) return;
+  event.preventDefault();
+  if (field.offsetParent === null) document.getElementById("menu").showPopover(); // on a phone
+  field.focus();
+  field.select();
+});
 
+// A plain form leads to another page: where that says it was taken, what was typed is no draft any more.
 const SENT = "statorwatch sent";
 function isRefusal(notice) {
   return notice.startsWith("not-");
@@ -152,7 +155,6 @@ document.addEventListener("htmx:load", ({ detail }) => {
   nameZones(detail.elt.parentElement ?? document);
 });
 
-showCurrentPage();
 localise(document);
 restoreDrafts(document);
 nameZones(document);

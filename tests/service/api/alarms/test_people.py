@@ -11,8 +11,9 @@ import pytest
 from core.units import NANOSECONDS_PER_DAY
 from service.alarms.catalogue import CATALOGUE
 from service.api.times import rfc3339
+from service.api.undo_time import UNDO_NS
 from service.storage import Repository
-from service.storage.records import Alarm, AlarmPlace, AlarmSpec
+from service.storage.records import Actor, Alarm, AlarmPlace, AlarmSpec
 from service.storage.states import AlarmKind
 from testing.service.plants import NOW_NS
 
@@ -50,6 +51,34 @@ def test_acknowledge_with_a_comment(client: httpx.Client, repository: Repository
     repository.clear_alarms(RELAY, [alarm.id], now_ns=NOW_NS + 5)
     assert client.get(f"{URL}/{alarm.id}").json()["state"] == "normal"
     assert client.get(f"{URL}/open").json()["items"] == []
+
+
+def test_who_acknowledged_by_mistake_undoes_it_within_ten_minutes(
+    client: httpx.Client, repository: Repository, alarm: Alarm, growing: Alarm
+) -> None:
+    undo = f"{URL}/acknowledgements/undo"
+    both = {"alarms": [alarm.id, growing.id]}
+    refused = client.post(undo, json=both)
+    assert refused.status_code == 409
+    assert "nothing was undone" in refused.json()["detail"]
+    client.post(f"{URL}/acknowledgements", json=both | {"comment": "all of them"})
+    long_ago = time.time_ns() - UNDO_NS - 1
+    repository.raise_alarm(RELAY, AlarmKind.FILE_REFUSED, "Y.CFG", "outside", now_ns=NOW_NS)
+    other = repository.raise_alarm(RELAY, AlarmKind.FILE_REFUSED, "Z.CFG", "outside", now_ns=NOW_NS)
+    repository.acknowledge_alarm(other.id, by=Actor("bob", "::1"), now_ns=time.time_ns())
+    answer = client.post(undo, json={"alarms": [*both["alarms"], other.id]})
+    assert answer.status_code == 200
+    assert {one["id"]: one["state"] for one in answer.json()["undone"]} == dict.fromkeys(
+        both["alarms"], "unacknowledged"
+    )
+    (late,) = answer.json()["refused"]
+    assert late["alarm"] == other.id
+    assert "by bob" in late["detail"]
+    latest = client.get(f"{URL}/{alarm.id}/changes").json()["items"][0]
+    assert (latest["event"], latest["before"]) == ("acknowledgement-undone", "acknowledged")
+    me = answer.json()["undone"][0]["changed_by"]
+    repository.acknowledge_alarm(alarm.id, by=Actor(me, "::1"), now_ns=long_ago)
+    assert client.post(undo, json={"alarms": [alarm.id]}).status_code == 409, "it is too late"
 
 
 def test_a_refusal_names_who_was_first_and_what_is_possible(client: httpx.Client, alarm: Alarm) -> None:

@@ -93,6 +93,16 @@ REQUESTS: Changes = {
         ),
         "alarm-acknowledged",
     ),
+    "POST /api/v1/alarms/acknowledgements/undo": (
+        lambda it: it.client.post(
+            f"{API}/alarms/acknowledgements/undo", json={"alarms": [it.acknowledged()]}
+        ),
+        "alarm-acknowledgement-undone",
+    ),
+    "POST /api/v1/motors/{name}/notes/{note_id}/undo": (
+        lambda it: it.client.post(f"{MOTOR}/notes/{it.note('maintenance')}/undo"),
+        "note-withdrawn",
+    ),
     "POST /api/v1/alarms/{alarm_id}/acknowledgements": (
         lambda it: it.client.post(f"{it.alarm()}/acknowledgements"),
         "alarm-acknowledged",

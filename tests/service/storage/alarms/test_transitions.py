@@ -21,17 +21,17 @@ PAUSE = Backoff(3600.0, 3600.0)
 
 EVENTS = tuple(AlarmEvent)
 EXPECTED = """
-                              raised     cleared    superseded reopened ack     shelve  unshelve ended   suppr   unsuppr  out  back
-unacknowledged                .          returned   normal     .        ack     shelved -        .       suppr   .        out  -
-acknowledged                  .          normal     normal     unack    -       shelved -        .       .       .        out  -
-returned-unacknowledged       unack      .          normal     .        normal  shelved -        .       suppr   .        out  -
-normal                        new        .          .          .        -       -       -        .       .       .        -    -
-shelved/standing              .          shelved    normal     unack    -       shelved unack    unack   .       .        out  -
-shelved/gone                  shelved    .          normal     .        -       shelved normal   normal  .       .        out  -
-suppressed/standing           .          suppr      normal     .        -       -       -        .       .       unack    out  -
-suppressed/gone               suppr      .          normal     .        -       -       -        .       .       normal   out  -
-out-of-service/standing       .          out        out        .        -       -       -        .       .       .        -    unack
-out-of-service/gone           out        .          .          .        -       -       -        .       .       .        -    normal
+                              raised     cleared    superseded reopened ack     undo    shelve  unshelve ended   suppr   unsuppr  out  back
+unacknowledged                .          returned   normal     .        ack     .       shelved -        .       suppr   .        out  -
+acknowledged                  .          normal     normal     unack    -       unack   shelved -        .       .       .        out  -
+returned-unacknowledged       unack      .          normal     .        normal  .       shelved -        .       suppr   .        out  -
+normal                        new        .          .          .        -       .       -       -        .       .       .        -    -
+shelved/standing              .          shelved    normal     unack    -       .       shelved unack    unack   .       .        out  -
+shelved/gone                  shelved    .          normal     .        -       .       shelved normal   normal  .       .        out  -
+suppressed/standing           .          suppr      normal     .        -       .       -       -        .       .       unack    out  -
+suppressed/gone               suppr      .          normal     .        -       .       -       -        .       .       normal   out  -
+out-of-service/standing       .          out        out        .        -       .       -       -        .       .       .        -    unack
+out-of-service/gone           out        .          .          .        -       .       -       -        .       .       .        -    normal
 """  # noqa: E501 - a table
 """What follows. `-`: refused to the person who asks; `.`: changes nothing; `new`: another alarm."""
 
@@ -50,6 +50,7 @@ COLUMNS: Mapping[str, AlarmEvent] = {
     "superseded": AlarmEvent.SUPERSEDED,
     "reopened": AlarmEvent.REOPENED,
     "ack": AlarmEvent.ACKNOWLEDGED,
+    "undo": AlarmEvent.ACKNOWLEDGEMENT_UNDONE,
     "shelve": AlarmEvent.SHELVED,
     "unshelve": AlarmEvent.UNSHELVED,
     "ended": AlarmEvent.SHELVING_ENDED,
@@ -146,6 +147,9 @@ OF_ALARM: Mapping[AlarmEvent, Callable[[Life, Alarm], object]] = {
     ),
     AlarmEvent.ACKNOWLEDGED: lambda life, alarm: life.repository.acknowledge_alarm(
         alarm.id, by=ANN, now_ns=life.now_ns
+    ),
+    AlarmEvent.ACKNOWLEDGEMENT_UNDONE: lambda life, alarm: life.repository.undo_acknowledgements(
+        [alarm.id], by=ANN, since_ns=NOW_NS, now_ns=life.now_ns
     ),
     AlarmEvent.SHELVED: _shelve,
     AlarmEvent.UNSHELVED: lambda life, alarm: life.repository.unshelve_alarm(

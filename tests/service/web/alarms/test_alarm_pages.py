@@ -60,7 +60,7 @@ def test_filters_live_in_the_address(client: httpx.Client, pump: Alarm, fan: Ala
     for show in ("active", "history"):
         document = page(client.get("/alarms", params={"motor": "FAN-A2", "show": show}))
         assert words(document, ".alarm h2") == ["FAN-A2: condition fault"]
-        assert "Only of motor FAN-A2" in words(document, "form[role=search]")[0]
+        assert "Only of motor FAN-A2" in words(document, "main form[role=search]")[0]
         assert addresses(document, ".tabs a")[1] == "/alarms?show=set-aside&motor=FAN-A2"
     assert "No alarm is like that" in client.get("/alarms", params={"relay": HOSTILE}).text
 
@@ -221,3 +221,23 @@ def test_a_comment_has_its_author_whatever_the_state_of_the_alarm(
     repository.clear_alarms_at(place, AlarmKind.CONDITION_FAULT, now_ns=NOW_NS, why="it is gone")
     for path in ("/alarms", f"/alarms/{pump.id}"):
         assert "statorwatch: it is gone" in " ".join(page(client.get(path)).text_content().split())
+
+
+def test_who_acknowledged_all_by_mistake_undoes_it_by_a_click(
+    client: httpx.Client, repository: Repository
+) -> None:
+    now_ns = time.time_ns()
+    ids = [
+        repository.raise_alarm("A1_SEL710", AlarmKind.FILE_REFUSED, name, "outside", now_ns=now_ns).id
+        for name in ("X.CFG", "Y.CFG")
+    ]
+    assert not page(client.get("/alarms")).cssselect("#undo")
+    client.post("/alarms/acknowledgements", data={"alarm": ids})
+    document = page(client.get("/alarms"))
+    assert "Acknowledged by you in the last ten minutes: 2 alarms" in words(document, "#undo")[0]
+    (undo,) = addresses(document, "#undo")
+    fields = [one.get("value") for one in document.cssselect("#undo input[name=alarm]")]
+    answer = client.post(undo, data={"alarm": fields})
+    assert answer.headers["location"] == "/alarms?done=acknowledgement-undone"
+    assert {repository.alarm(one).state for one in ids} == {AlarmState.UNACKNOWLEDGED}
+    assert not page(client.get("/alarms")).cssselect("#undo")

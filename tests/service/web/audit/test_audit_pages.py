@@ -76,4 +76,4 @@ def test_only_auditors_see_it(client: httpx.Client, repository: Repository) -> N
     assert client.get("/audit").status_code == 403
     client.headers["Authorization"] = f"Bearer {token_of(repository, Role.SECAUD, name='secaud')}"
     document = page(client.get("/audit"))
-    assert words(document, "nav a") == ["Audit trail", "Account", "Help"]
+    assert words(document, "nav a") == ["Settings", "Help", "Audit trail", "Account"]

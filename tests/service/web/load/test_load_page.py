@@ -22,13 +22,13 @@ def test_the_page_shows_profile_limits_and_heat(client: httpx.Client, repository
 
     document = page(client.get(HERE))
 
-    facts = words(document, "#profile-title ~ dl dd")
+    facts = words(document, ".facts.dense dd")
     assert facts[:2] == ["15 h", "6 h"]
     assert facts[-1] == "at least 1"
     assert "voltage below 90 %1 h21 h1 h88.0 %" in words(document, "section tbody tr")
     assert "K above ambient" in words(document, "#heat-title ~ dl dd")[0]
     assert "no two records" in words(document, "#heat-title ~ dl dd")[-1]
-    assert addresses(document, "main p a")[1:] == [f"{HERE}?days={days}" for days in (1, 7, 90)]
+    assert addresses(document, ".spans a")[:3] == [f"{HERE}?days={days}" for days in (1, 7, 30)]
     assert words(document, "figure svg title")
 
 
@@ -55,7 +55,7 @@ def test_the_relay_s_statistics_stand_beside_the_service_s_counts(
     told = read_motor_statistics(MOT)
     repository.add_relay_statistics("PUMP-A1", told, by=Actor("ada", "tests"), now_ns=1)
     document = page(client.get(HERE))
-    facts = words(document, "#relay-title ~ dl dd")
+    facts = words(document, "section[aria-labelledby=relay-title] dd")
     assert facts[0] == "17 0 counted here"
     assert facts[-2:] == ["1", "0"]
     assert "the service has measured nothing in that time" in words(document, "#relay-title ~ p")[-1]

@@ -10,7 +10,7 @@ from testing.service.rotor_and_supply import BROKEN_ROTOR, SOUND_ROTOR, Examined
 from tests.service.web.motor.recorded import MOTOR, know
 from tests.service.web.pages import page, words
 
-HERE = f"/motors/{MOTOR}"
+HERE = f"/motors/{MOTOR}/stator"
 
 
 @pytest.fixture

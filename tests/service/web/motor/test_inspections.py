@@ -9,18 +9,19 @@ from tests.service.web.motor.recorded import MOTOR, know
 from tests.service.web.pages import addresses, page, words
 
 HERE = f"/motors/{MOTOR}"
+LOGBOOK = f"{HERE}/logbook"
 FOUND = {"outcome": "other-cause", "cause": "a loose terminal", "text": "terminal box <b>opened</b>"}
 
 
 def test_a_person_tells_with_pictures_what_was_found(client: httpx.Client, repository: Repository) -> None:
     know(repository)
     tell(repository, FAULT)
-    assert words(page(client.get(HERE)), "#inspections .notes li") == []
+    assert words(page(client.get(LOGBOOK)), "#inspections .notes li") == []
     files = [("pictures", ("a.png", SMALL_PNG, "image/png")), ("pictures", ("b.svg", JPEG_BYTES, "x/y"))]
     answer = client.post(f"{HERE}/inspections", data=FOUND, files=files)
-    assert answer.headers["location"] == f"{HERE}?done=inspection-kept"
+    assert answer.headers["location"] == f"{LOGBOOK}?done=inspection-kept"
 
-    document = page(client.get(HERE))
+    document = page(client.get(LOGBOOK))
     (told,) = words(document, "#inspections .notes li")
     assert "Other cause: a loose terminal · finding: shorted turns" in told
     assert "terminal box <b>opened</b>" in told
@@ -34,7 +35,7 @@ def test_a_person_tells_with_pictures_what_was_found(client: httpx.Client, repos
 
     (withdrawal,) = addresses(document, "#inspections form[action$='/withdrawal']")
     client.post(withdrawal, data={"reason": "wrong motor"})
-    assert "withdrawn" in words(page(client.get(HERE)), "#inspections .notes li")[0]
+    assert "withdrawn" in words(page(client.get(LOGBOOK)), "#inspections .notes li")[0]
     assert words(page(client.get("/reports")), "#inspections-found tbody tr") == []
 
 

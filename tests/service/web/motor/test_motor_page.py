@@ -17,6 +17,7 @@ from core.condition.verdict.condition import Condition as Judged
 from core.units import NANOSECONDS_PER_DAY, NANOSECONDS_PER_SECOND
 from service.api.conditions.schemas import Condition
 from service.condition.wording import KINDS, finding
+from service.notifications.trends import trend_drawing
 from service.plant import MeteredQuantity
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
@@ -32,6 +33,9 @@ from tests.service.web.motor.recorded import MOTOR, Shown, know, record
 from tests.service.web.pages import HOSTILE, addresses, page, words
 
 HERE = f"/motors/{MOTOR}"
+STATOR, SUPPLY, RECORDINGS, LOGBOOK, NAMEPLATE = (
+    f"{HERE}/{tab}" for tab in ("stator", "supply", "recordings", "logbook", "nameplate")
+)
 ADA = Actor("ada", "::1")
 
 
@@ -72,23 +76,43 @@ def test_a_motor_without_records_says_so_in_every_part(client: httpx.Client, rep
     know(repository)
     document = page(client.get(HERE))
     assert words(document, "#verdict .sentence") == ["unknown Nothing is known of its windings yet."]
-    text = document.text_content()
-    for expected in (
-        "There is no valid record yet",
-        "no trend",
-        "No alarm of this motor is open",
-        "The relay told no measured values",
-        "has not made a record of this motor yet",
-        "Nothing was written of this motor yet",
-        "Nothing was judged yet",
+    for address, expected in (
+        (HERE, "There is no valid record yet"),
+        (HERE, "no trend"),
+        (HERE, "No alarm of this motor is open"),
+        (HERE, "The relay told no measured values"),
+        (SUPPLY, "The relay told no measured values"),
+        (RECORDINGS, "has not made a record of this motor yet"),
+        (LOGBOOK, "Nothing was written of this motor yet"),
+        (STATOR, "Nothing was judged yet"),
+        (f"{HERE}/rotor", "No record tells of the rotor yet"),
+        (f"{HERE}/load", "Nothing was metered in this time"),
+        (f"{HERE}/starts", "No start of this motor is known yet"),
+        (NAMEPLATE, "No record tells of the parameters yet"),
     ):
-        assert expected in text
-    assert len(document.cssselect("#pictures svg")) == 4
+        assert expected in page(client.get(address)).text_content(), address
+    assert len(page(client.get(STATOR)).cssselect("#pictures svg")) == 2
+
+
+def test_the_strip_has_a_line_of_each_part_that_leads_to_its_tab(shown: Shown) -> None:
+    document = page(shown.client.get(f"{HERE}?days=30"))
+    lines = words(document, "#parts li")
+    names = ["Stator", "Rotor", "Supply", "Load", "Measurement", "Data"]
+    assert [line.split()[0] for line in lines] == names
+    assert lines[0] == "Stator fault shorted turns in phase " + lines[0][-1]
+    assert lines[-1].startswith("Data healthy Latest valid record ")
+    tabs = ["stator", "rotor", "supply", "load", "nameplate", "recordings"]
+    assert addresses(document, "#parts li a") == [f"{HERE}/{tab}?days=30" for tab in tabs]
+    for address in addresses(document, f'nav[aria-label="{MOTOR}"] a'):
+        tab = page(shown.client.get(address))
+        assert words(tab, "h1") == [MOTOR]
+        assert addresses(tab, f'nav[aria-label="{MOTOR}"] [aria-current=page]') == [address]
+        assert words(tab, ".spans [aria-current]") in (["30 days"], [])
 
 
 def test_a_motor_that_no_service_has_read_yet_has_a_page(client: httpx.Client) -> None:
-    document = page(client.get("/motors/FAN-A2"))
-    assert "has not read the motors file" in document.text_content()
+    assert client.get("/motors/FAN-A2").status_code == 200
+    assert "has not read the motors file" in client.get("/motors/FAN-A2/nameplate").text
     assert client.get("/motors/NO-SUCH").status_code == 404
 
 
@@ -121,6 +145,20 @@ def test_the_trend_has_levels_intervals_limits_and_what_happened(shown: Shown) -
     assert marks == [("note", pytest.approx(told_ns / 1e9, abs=0.01))]
 
 
+def test_the_picture_in_a_mail_shows_what_the_chart_shows(shown: Shown) -> None:
+    at_ns = time.time_ns() - 20 * 3600 * NANOSECONDS_PER_SECOND
+    note = Event(at_ns, EventKind.NOTE, "greased")
+    shown.repository.add_event(MOTOR, note, by=ADA, now_ns=time.time_ns())
+    drawn = chart(page(shown.client.get(HERE)))
+    svg = trend_drawing(shown.repository, MOTOR, "UTC")
+    assert svg is not None
+    told = html.fromstring(svg.encode()).xpath("//*[local-name()='text']/text()")
+    assert drawn["limits"][0]["label"] == "motor's limit 0.50 %"
+    assert "motor's limit 0.5 %" in told
+    assert drawn["marks"][-1]["label"] == "note"
+    assert f"{len(drawn['marks'])} note" in told
+
+
 def test_the_values_of_the_trend_stand_in_a_table(shown: Shown) -> None:
     document = page(shown.client.get(HERE))
     assert len(document.cssselect("#trend-chart .chart-values tbody tr")) == len(shown.records)
@@ -132,13 +170,13 @@ def test_the_time_shown_lives_in_the_address(
     record(repository, store, ended_ns=time.time_ns() - 100 * NANOSECONDS_PER_DAY)
     recent = page(client.get(HERE))
     assert "There is no valid record in this time" in recent.text_content()
-    assert f"{HERE}?days=all#trend" in addresses(recent, "#trend a")
+    assert f"{HERE}?days=all" in addresses(recent, "#trend a")
     document = page(client.get(f"{HERE}?days=all"))
     assert words(document, '.spans a[aria-current="true"]') == ["all"]
     assert chart(document)
     refused = client.get(f"{HERE}?days=12")
     assert refused.status_code == 422
-    assert "7, 30, 90, 365, all" in refused.text
+    assert "1, 7, 30, 90, 365, all" in refused.text
 
 
 def test_who_looks_closer_gets_the_records_of_that_time(shown: Shown) -> None:
@@ -155,21 +193,40 @@ def test_who_looks_closer_gets_the_records_of_that_time(shown: Shown) -> None:
 
 
 def test_pictures_tell_in_words_what_they_show(shown: Shown) -> None:
-    document = page(shown.client.get(HERE))
-    titles = words(document, "#pictures svg title")
-    asymmetry, load, supply, profile = titles
+    asymmetry, load = words(page(shown.client.get(STATOR)), "#pictures svg title")
     assert f"{MOTOR}: asymmetry by phase. Mean of the dots " in asymmetry
     assert "change since then" in asymmetry
     assert f"fault level against load. {len(shown.records)} records between" in load
+    (supply,) = words(page(shown.client.get(SUPPLY)), "figure.picture svg title")
     assert "unbalance of currents against voltages. Latest record" in supply
+    (profile,) = words(page(shown.client.get(f"{HERE}/load")), "figure.picture svg title")
     assert "load profile. Most, 100 % of the records" in profile
+
+
+def test_current_voltage_and_power_are_drawn_over_the_time_of_the_trend(shown: Shown) -> None:
+    values = {MeteredQuantity.IA: 1.5, MeteredQuantity.VAB: 381.0, MeteredQuantity.POWER: 612.0}
+    now_ns = time.time_ns()
+    minutes = [now_ns - number * 60 * NANOSECONDS_PER_SECOND for number in range(600)]
+    told = {one.value: value for one, value in values.items()}
+    shown.repository.add_samples([Sample(MOTOR, at_ns, told) for at_ns in minutes])
+    document = page(shown.client.get(HERE))
+    trend = chart(document)
+    for key, label, value in (("current", "a", 1.5), ("voltage", "ab", 381.0), ("power", "active", 0.612)):
+        drawn = json.loads(document.cssselect(f"#{key}-data")[0].text_content())
+        (series,) = drawn["series"]
+        assert (series["label"], set(series["values"])) == (label, {value})
+        assert drawn["sync"] == trend["sync"]
+        assert drawn["x"]["to"] == pytest.approx(trend["x"]["to"], abs=1.0)
+    assert json.loads(document.cssselect("#voltage-data")[0].text_content())["bands"] == [
+        {"low": 342.0, "high": 418.0, "label": "rated ±10 % (NEMA MG-1)", "tone": "muted"}
+    ]
 
 
 def test_measured_values_come_with_their_time(client: httpx.Client, repository: Repository) -> None:
     values = {MeteredQuantity.IA: 12.5, MeteredQuantity.POWER: 6100.0, MeteredQuantity.MAXIMUM_VAB: 421.0}
     at_ns = time.time_ns() - 300 * NANOSECONDS_PER_SECOND
     repository.add_samples([Sample(MOTOR, at_ns, {one.value: value for one, value in values.items()})])
-    document = page(client.get(HERE))
+    document = page(client.get(SUPPLY))
     shown = dict(zip(words(document, "#measured dt"), words(document, "#measured dd"), strict=True))
     assert shown == {"Current a": "12.5 A", "Power": "6100 W", "Largest voltage ab": "421 V"}
     assert "5 minutes ago" in words(document, "#measured")[0]
@@ -178,7 +235,7 @@ def test_measured_values_come_with_their_time(client: httpx.Client, repository: 
 def test_every_measured_quantity_has_words(client: httpx.Client, repository: Repository) -> None:
     values = {one.value: 1.0 for one in MeteredQuantity}
     repository.add_samples([Sample(MOTOR, time.time_ns(), values)])
-    names = words(page(client.get(HERE)), "#measured dt")
+    names = words(page(client.get(SUPPLY)), "#measured dt")
     assert len(names) == len(set(names)) == len(MeteredQuantity)
 
 
@@ -186,7 +243,7 @@ def test_nameplate_and_parameters_say_where_they_come_from(
     client: httpx.Client, repository: Repository
 ) -> None:
     know(repository)
-    (text,) = words(page(client.get(HERE)), "#nameplate")
+    (text,) = words(page(client.get(NAMEPLATE)), "#nameplate")
     assert "Rated power at the shaft800 W" in text
     assert "Poles4, 1500 rpm without slip" in text
     assert "Stator windingnot given" in text
@@ -197,11 +254,12 @@ def test_nameplate_and_parameters_say_where_they_come_from(
 
 def test_forms_are_there_for_those_who_may(shown: Shown) -> None:
     client, repository = shown.client, shown.repository
-    seen = {}
+    seen: dict[Role, set[str] | None] = {}
     for role in Role:
-        token = token_of(repository, role, name=role.value.lower())
-        answer = client.get(HERE, headers={"Authorization": f"Bearer {token}"})
-        seen[role] = forms(page(answer)) - {"withdrawal"} if answer.status_code == 200 else None
+        headers = {"Authorization": f"Bearer {token_of(repository, role, name=role.value.lower())}"}
+        answers = [client.get(tab, headers=headers) for tab in (HERE, RECORDINGS, LOGBOOK)]
+        found = [forms(page(one)) - {"withdrawal"} for one in answers if one.status_code == 200]
+        seen[role] = set().union(*found) if found else None
     operator = {"recording-requests", "notes", "planned-stop", "inspections"}
     assert seen == {
         Role.VIEWER: set(),
@@ -214,7 +272,7 @@ def test_forms_are_there_for_those_who_may(shown: Shown) -> None:
 
 def test_a_recording_is_asked_for(client: httpx.Client, repository: Repository) -> None:
     answer = client.post(f"{HERE}/recording-requests")
-    assert (answer.status_code, answer.headers["location"]) == (303, f"{HERE}?done=recording-requested")
+    assert (answer.status_code, answer.headers["location"]) == (303, f"{RECORDINGS}?done=recording-requested")
     (request,) = repository.recording_requests(motor=MOTOR, limit=5).items
     document = page(client.get(answer.headers["location"]))
     assert words(document, "#messages") == [
@@ -234,11 +292,11 @@ def test_a_long_recording_is_offered_and_asked_for(client: httpx.Client, reposit
 
 def test_the_latest_record_is_diagnosed_again(shown: Shown) -> None:
     client, repository, records = shown.client, shown.repository, shown.records
-    document = page(client.get(HERE))
+    document = page(client.get(RECORDINGS))
     (field,) = document.cssselect('form[action$="/diagnoses"] input')
     assert field.get("value") == records[-1]
     answer = client.post(f"{HERE}/diagnoses", data={"recording": records[-1]})
-    assert answer.headers["location"] == f"{HERE}?done=diagnosis-requested"
+    assert answer.headers["location"] == f"{RECORDINGS}?done=diagnosis-requested"
     assert len(repository.jobs(records[-1], limit=5).items) == 2
 
 
@@ -271,11 +329,11 @@ def test_a_note_is_written_for_a_time_in_utc_and_withdrawn(
     minute_ns = 60 * NANOSECONDS_PER_SECOND
     assert note.time_ns == int(yesterday.timestamp()) * NANOSECONDS_PER_SECOND // minute_ns * minute_ns
 
-    document = page(client.get(HERE))
+    document = page(client.get(LOGBOOK))
     assert "bearing replaced" in words(document, "#logbook .notes li")[0]
     gone = client.post(f"{HERE}/notes/{note.id}/withdrawal", data={"reason": "another motor"})
-    assert gone.headers["location"] == f"{HERE}?done=note-withdrawn"
-    (told,) = words(page(client.get(HERE)), "#logbook .notes .withdrawn")
+    assert gone.headers["location"] == f"{LOGBOOK}?done=note-withdrawn"
+    (told,) = words(page(client.get(LOGBOOK)), "#logbook .notes .withdrawn")
     assert "by tester: another motor" in told
 
 
@@ -283,7 +341,7 @@ def test_an_operator_writes_notes_that_change_nothing_else(
     client: httpx.Client, repository: Repository
 ) -> None:
     client.headers["Authorization"] = f"Bearer {token_of(repository, Role.OPERATOR, name='olga')}"
-    assert not page(client.get(HERE)).cssselect('form[action$="/notes"] select[name="kind"]')
+    assert not page(client.get(LOGBOOK)).cssselect('form[action$="/notes"] select[name="kind"]')
     assert client.post(f"{HERE}/notes", data={"text": "noisy"}).status_code == 303
     refused = client.post(f"{HERE}/notes", data={"text": "rewound", "kind": "rewound"})
     assert refused.status_code == 403
@@ -309,10 +367,10 @@ def test_hostile_texts_stay_texts(client: httpx.Client, repository: Repository) 
     )
     spec = AlarmSpec(AlarmKind.CONDITION_FAULT, HOSTILE, "shorted-turns")
     repository.raise_alarm_at(AlarmPlace(motor=MOTOR), spec, now_ns=now_ns)
-    answer = client.get(HERE)
-    page(answer)
-    assert HOSTILE not in answer.text
-    assert HOSTILE in page(answer).text_content()
+    for tab in (HERE, LOGBOOK):
+        answer = client.get(tab)
+        assert HOSTILE not in answer.text
+        assert HOSTILE in page(answer).text_content()
 
 
 def test_starts_and_trips_are_marked_in_the_trend(

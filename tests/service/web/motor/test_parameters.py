@@ -14,7 +14,7 @@ from testing.service.tracked_records import tracked_records
 from tests.service.web.motor.recorded import MOTOR, know
 from tests.service.web.pages import page, words
 
-HERE = f"/motors/{MOTOR}"
+HERE = f"/motors/{MOTOR}/nameplate?days=all"
 WRONG_FROM = REFERENCE_RECORDS + 5
 
 

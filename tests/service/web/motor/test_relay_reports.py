@@ -93,9 +93,9 @@ def test_a_report_that_is_too_long_is_refused(client: httpx.Client) -> None:
 def test_the_form_is_on_the_page_of_who_may_bring_recordings(
     client: httpx.Client, context: ApiContext
 ) -> None:
-    assert REPORTS in addresses(page(client.get(HERE)), "#reports form")
+    assert REPORTS in addresses(page(client.get(f"{HERE}/recordings")), "#reports form")
     client.headers["Authorization"] = f"Bearer {token_of(context.repository, Role.VIEWER, name='viewer')}"
-    assert not page(client.get(HERE)).cssselect("#reports")
+    assert not page(client.get(f"{HERE}/recordings")).cssselect("#reports")
     refused = bring(client, SER)
     assert refused.status_code == 403
     assert Permission.RECORDINGS in refused.text

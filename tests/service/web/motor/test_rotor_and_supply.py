@@ -24,9 +24,10 @@ from testing.service.rotor_and_supply import (
 )
 from testing.service.starts import START, RecordedStarts
 from tests.service.web.motor.recorded import MOTOR, know
-from tests.service.web.pages import page, words
+from tests.service.web.pages import addresses, page, words
 
-HERE = f"/motors/{MOTOR}"
+HERE = f"/motors/{MOTOR}/rotor?days=all"
+SUPPLY_TAB = f"/motors/{MOTOR}/supply?days=all"
 LIGHTLY_LOADED = replace(SOUND_ROTOR, load_bin=3, load_level=0.35, severity_dB=-66.0)
 
 
@@ -44,8 +45,10 @@ def chart(document: html.HtmlElement, key: str) -> Any:
 def test_what_no_record_tells_is_said(client: httpx.Client, recorded: ExaminedRecordings) -> None:
     document = page(client.get(HERE))
     assert words(document, "#rotor .sentence") == ["not assessed No record tells of the rotor yet."]
+    assert not document.cssselect("#rotor-severity-data")
+    document = page(client.get(SUPPLY_TAB))
     assert "No record shows the supply yet." in " ".join(words(document, "#supply"))
-    assert not document.cssselect("#rotor-severity-data, #supply-data")
+    assert not document.cssselect("#supply-data")
 
 
 def test_a_broken_cage_is_told_in_words_with_how_sure_that_is(
@@ -94,11 +97,21 @@ def test_severity_is_drawn_by_load_with_what_would_be_seen(
 
 def test_the_supply_is_told_and_drawn(client: httpx.Client, recorded: ExaminedRecordings) -> None:
     recorded.add(None, SUPPLY)
-    document = page(client.get(HERE))
+    document = page(client.get(SUPPLY_TAB))
     assert "derating 1.00" in " ".join(words(document, "#supply"))
     drawn = {one["label"]: one["values"] for one in chart(document, "supply")["series"]}
     assert drawn["unbalance of the voltages (NEMA)"] == [0.68]
     assert drawn["voltage beside the rated one"] == [-0.27]
+
+
+def test_records_of_before_the_time_shown_are_a_link_away(
+    client: httpx.Client, recorded: ExaminedRecordings
+) -> None:
+    recorded.add(SOUND_ROTOR, SUPPLY)
+    for whole in (HERE, SUPPLY_TAB):
+        document = page(client.get(whole.partition("?")[0]))
+        assert "No recording of this time tells of it" in document.text_content()
+        assert whole in addresses(document, "main p a")
 
 
 def test_the_start_is_told_beside_the_running_motor(

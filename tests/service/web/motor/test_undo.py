@@ -6,9 +6,10 @@ import httpx
 import pytest
 
 from core.condition.events import EventKind
+from service.api.conditions.undo import latest_to_undo, may_undo
+from service.api.undo_time import UNDO_NS
 from service.storage import Repository
 from service.storage.records import ConditionEvent
-from service.web.motor.undo import UNDO_NS, latest_to_undo, may_undo
 from testing.service.plants import NOW_NS
 from tests.service.web.pages import addresses, page
 
@@ -32,7 +33,7 @@ def test_a_baseline_that_was_reset_by_mistake_is_back_by_a_click(
     (undo,) = addresses(page(client.get(HERE)), UNDO)
     assert undo == f"{HERE}/notes/{note.id}/undo"
     answer = client.post(undo)
-    assert (answer.status_code, answer.headers["location"]) == (303, f"{HERE}?done=undone")
+    assert (answer.status_code, answer.headers["location"]) == (303, f"{HERE}/logbook?done=undone")
     assert notes(repository) == []
 
 
@@ -75,3 +76,15 @@ def test_it_is_the_same_person_within_ten_minutes(
 ) -> None:
     assert may_undo(note, account, NOW_NS + after_ns) == may
     assert latest_to_undo([note], account, NOW_NS + after_ns) == (note if may else None)
+
+
+def test_the_api_undoes_the_same(client: httpx.Client, repository: Repository) -> None:
+    client.post(f"{HERE}/reference", data={"reason": "tested"})
+    (note,) = notes(repository)
+    answer = client.post(f"/api/v1{HERE}/notes/{note.id}/undo")
+    assert (answer.status_code, answer.json()["withdrawn_reason"]) == (200, "undone within 10 minutes")
+    assert notes(repository) == []
+    again = client.post(f"/api/v1{HERE}/notes/{note.id}/undo").json()
+    assert (again["kind"], again["text"]) == ("reference-restarted", "tested")
+    (kept,) = notes(repository)
+    assert (kept.id, kept.time_ns) == (again["id"], note.time_ns)

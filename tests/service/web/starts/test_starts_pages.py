@@ -109,10 +109,12 @@ def test_the_torque_of_a_start_is_drawn(client: httpx.Client, recorded: Recorded
 def test_many_starts_come_in_pages(client: httpx.Client, recorded: RecordedStarts) -> None:
     for _ in range(53):
         recorded.add(START)
-    document = page(client.get(HERE))
-    assert len(document.cssselect("tbody tr")) == 50
-    (further,) = addresses(document, 'a[rel="next"]')
-    assert len(page(client.get(further)).cssselect("tbody tr")) == 3
+    here, rows = HERE, []
+    while here:
+        document = page(client.get(here))
+        rows.append(len(document.cssselect("tbody tr")))
+        here = next(iter(addresses(document, 'a[rel="next"]')), "")
+    assert rows == [8] * 6 + [5]
     (further_of_all,) = addresses(page(client.get("/starts")), 'a[rel="next"]')
     assert len(page(client.get(further_of_all)).cssselect("tbody tr")) == 3
     assert client.get(f"{HERE}?cursor=nonsense").status_code == 422

@@ -3,6 +3,7 @@
 
 import { nearest } from "./description.js";
 import { looksOf, sampleOf } from "./looks.js";
+import { savingTools } from "./saving.js";
 
 /** @typedef {import("./chart.js").Chart} Chart */
 
@@ -57,6 +58,7 @@ export function addTools(chart) {
       button.setAttribute("aria-label", `${words}: ${chart.figure.dataset.chartName ?? "chart"}`);
       return button;
     }),
+    ...savingTools(chart),
   );
 }
 

@@ -4,6 +4,7 @@
 /**
  * @typedef {object} SeriesDescription
  * @property {string} label
+ * @property {string} [short] what stands at the end of its line
  * @property {string} unit
  * @property {string} tone name of a colour of the theme
  * @property {"line"|"steps"|"points"|"dashes"|"thin"|"envelope"} kind of an envelope only `low` and `high` are drawn
@@ -17,6 +18,7 @@
  * @property {SeriesDescription[]} series
  * @property {{x: number, label: string, tone: string}[]} [marks]
  * @property {{y: number, label: string, tone: string}[]} [limits]
+ * @property {{low: number, high: number, label: string, tone: string}[]} [bands] grounds between values of y
  * @property {string} [sync] charts with the same name share cursor and zoom
  * @property {number} [height] in CSS pixels
  * @property {boolean} [rows] series are states, 0 or 1, each in a row of its own
@@ -25,7 +27,7 @@
 /** What a plot has to be made anew for. @param {Description} description */
 export function shape(description) {
   const series = description.series.map((one) => [one.label, one.kind, one.tone, Boolean(one.low && one.high)]);
-  return JSON.stringify([series, description.y, description.marks, description.limits]);
+  return JSON.stringify([series, description.y, description.marks, description.limits, description.bands]);
 }
 
 /** What the axis reaches over: all values, and what it has to include. @param {Description["x"]} x @returns {[number, number]} */

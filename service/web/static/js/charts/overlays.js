@@ -4,6 +4,31 @@
 const LETTERING = 11;
 
 /**
+ * Grounds between values of y, below the lines of the chart.
+ * @param {any} plot
+ * @param {import("./description.js").Description} description
+ * @param {import("./theme.js").Theme} theme
+ */
+export function bands(plot, { bands: grounds }, theme) {
+  const { ctx, bbox: box } = plot;
+  const ratio = plot.pxRatio ?? window.devicePixelRatio;
+  ctx.save();
+  ctx.beginPath();
+  ctx.rect(box.left, box.top, box.width, box.height);
+  ctx.clip();
+  ctx.font = `${LETTERING * ratio}px ${getComputedStyle(document.body).fontFamily}`;
+  for (const { low, high, label, tone } of grounds ?? []) {
+    const [top, bottom] = [plot.valToPos(high, "y", true), plot.valToPos(low, "y", true)];
+    ctx.fillStyle = theme.of("band");
+    ctx.fillRect(box.left, top, box.width, bottom - top);
+    ctx.fillStyle = theme.of(tone);
+    ctx.textAlign = "left";
+    ctx.fillText(label, box.left + 4 * ratio, Math.min(bottom, box.top + box.height) - 4 * ratio);
+  }
+  ctx.restore();
+}
+
+/**
  * @param {any} plot
  * @param {import("./description.js").Description} description
  * @param {number[]} markers

@@ -2,6 +2,7 @@
 /** Draws every chart of a page whose description is in the page: <figure data-chart="id of the JSON">. */
 
 import { Chart } from "./chart.js";
+import { offerPictures } from "./saving.js";
 
 /** Charts of the page by the id of their description. @type {Map<string, Chart>} */
 export const charts = new Map();
@@ -53,8 +54,11 @@ function draw(figure) {
 performance.mark("charts: data");
 afterPainting(() => performance.measure("charts: first paint", "charts: data")); // of those that are seen at once
 drawCharts(document);
+offerPictures(document);
 // Parts that htmx has put into the page anew.
 document.addEventListener("htmx:load", (event) => {
   const part = event.target;
-  if (part instanceof HTMLElement) drawCharts(part.parentElement ?? part);
+  if (!(part instanceof HTMLElement)) return;
+  drawCharts(part.parentElement ?? part);
+  offerPictures(part.parentElement ?? part);
 });

@@ -2,7 +2,8 @@
 /** Draws a chart's description with uPlot: lines, bands, axes, and what lies over them. */
 
 import { drawPoints, looksOf } from "./looks.js";
-import { limitsAndMarks } from "./overlays.js";
+import { bands, limitsAndMarks } from "./overlays.js";
+import { labelled, nameLines } from "./names.js";
 import { colours } from "./theme.js";
 import { inStepsOf, TIMES } from "./words.js";
 
@@ -12,6 +13,7 @@ import { inStepsOf, TIMES } from "./words.js";
 const USUAL_WIDTH = 600; // CSS pixels
 const NARROW = 480; // CSS pixels
 const LONGEST_NAME = 10; // letters beside a row
+const NAMES = 84; // CSS pixels beside the lines, for what they are called
 const STATE_HEIGHT = 0.7; // of its row
 
 /**
@@ -32,6 +34,7 @@ export function plotted(place, description, { width: known, hidden, markers, onS
   const options = {
     width,
     height: description.height ?? 240,
+    padding: [null, labelled(description) && width >= NARROW ? NAMES : null, null, null],
     legend: { show: false },
     scales: scales(description),
     axes: axes(description, theme, width < NARROW),
@@ -40,8 +43,10 @@ export function plotted(place, description, { width: known, hidden, markers, onS
     hooks: {
       setSelect: [onSelect],
       setCursor: [onCursor],
+      drawClear: [(/** @type {any} */ plot) => bands(plot, description, theme)],
       draw: [
         (/** @type {any} */ plot) => {
+          nameLines(plot, description, hidden, theme, width >= NARROW ? NAMES : 0);
           drawPoints(plot, description.series, hidden, theme);
           limitsAndMarks(plot, description, markers(), theme);
         },
@@ -93,8 +98,8 @@ function scales(description) {
 }
 
 /** From where to where the axis of y goes. @param {Description} description @param {number|null} low @param {number|null} high @returns {[number, number]} */
-function reach({ y, limits }, low, high) {
-  const lines = (limits ?? []).map((one) => one.y);
+function reach({ y, limits, bands: grounds }, low, high) {
+  const lines = [...(limits ?? []).map((one) => one.y), ...(grounds ?? []).flatMap((one) => [one.low, one.high])];
   const lowest = Math.min(low ?? Infinity, y.from ?? Infinity, ...lines);
   const highest = Math.max(high ?? -Infinity, y.to ?? -Infinity, ...lines);
   if (!(lowest <= highest)) return [0, 1];

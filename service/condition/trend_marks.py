@@ -1,15 +1,15 @@
-"""What happened to a motor in a time, for its trend: starts, trips, its baseline, what people told."""
+"""What happened to a motor in a time, for its trend on pages and in mails: starts, trips, baseline, notes."""
 
 from collections.abc import Mapping, Sequence
 from typing import Final
 
 from core.condition.events import EventKind
 from core.operation import Operation
+from core.terms import phrase
 from core.units import NANOSECONDS_PER_SECOND
+from service.pictures.trend import TrendMark
 from service.storage import Repository
 from service.storage.states import RelayEventKind
-from service.web.motor.trend import TrendMark
-from service.web.words import phrase
 
 MOST_OF_EACH: Final = 40
 """The latest of each kind are marked; more would hide one another and the trend."""
@@ -38,7 +38,7 @@ def trend_marks(repository: Repository, motor: str, from_ns: int, to_ns: int) ->
         if one.withdrawn_ns is None
     ]
     return sorted(
-        (one for one in marks if from_ns <= one.time_ns < to_ns), key=lambda mark: (mark.time_ns, mark.label)
+        (one for one in marks if from_ns <= one.time_ns < to_ns), key=lambda mark: (mark.time_ns, mark.words)
     )
 
 
@@ -55,6 +55,6 @@ def _told_by_relay(
         one
         for one in told
         if not any(
-            mark.label == one.label and abs(mark.time_ns - one.time_ns) <= SAME_NS for mark in recorded
+            mark.words == one.words and abs(mark.time_ns - one.time_ns) <= SAME_NS for mark in recorded
         )
     ]
