@@ -73,7 +73,7 @@ def play_month(
     bar = Progress(TextColumn("day {task.completed:.1f} of {task.total:g}"), BarColumn(), console=progress())
     with bar:
         task = bar.add_task("month", total=month.days)
-        leap = month.leap_at(datetime.now(UTC)) + 1
+        leap = min(month.leap_at(datetime.now(UTC)) + 1, month.leaps)  # a slow start may have taken all of it
         _pause_until(month, leap, plant.pause)
         rounds = 0
         while True:
