@@ -21,7 +21,6 @@ PASSAGES: Final[Mapping[str, str]] = {
     "hours beyond limits": "reference/load.html#hours-beyond-limits",
     "ignored files": "reference/relays.html#files",
     "link": "how-to/security.html",
-    "load and heat": "reference/load.html",
     "load profile": "reference/load.html#load-profile",
     "logbook": "how-to/motor-page.html#what-you-can-do-there",
     "losses": "reference/losses.html#over-time",
