@@ -6,7 +6,7 @@ from typing import Final, Literal
 
 from core.condition.kinds import Kind
 from core.diagnosis.phase_words import NAMED_PHASE
-from core.machines.winding_frame import Winding
+from core.machines.stator_winding import Winding
 from core.normal_distribution import NORMAL_95
 from core.units import NANOSECONDS_PER_DAY
 

@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 from core.machines.base import Array
 from core.machines.parameters import Connection, Motor
 from core.machines.playback import Window, window_of_record
+from core.machines.stator_winding import Winding
 from core.machines.supply import Supply, supply
-from core.machines.winding_frame import Winding, terminal_winding, to_winding_frame
+from core.machines.winding_frame import terminal_winding, to_winding_frame
 from core.signals.clarke import clarke
 from core.signals.decimation import decimate
 from core.signals.phasors import fundamental_phasors

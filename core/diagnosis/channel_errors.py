@@ -5,7 +5,8 @@ from math import pi
 from typing import Final
 
 from core.machines.parameters import Connection, Motor
-from core.machines.winding_frame import Winding, terminal_winding
+from core.machines.stator_winding import Winding
+from core.machines.winding_frame import terminal_winding
 from core.signals.sequence import PhaseSequence
 from core.signals.terminals import VoltageChannels
 

@@ -8,7 +8,7 @@ from typing import Final, Self
 from core.machines.deep_bars import DeepBars, LeakageSaturation, SeenRotor
 from core.machines.sensors import SensorClass
 from core.machines.stator_winding import StatorWinding
-from core.recordings.tables.layout import TableScaling
+from core.table_layout import TableScaling
 
 MAGNETISING_OVER_SELF: Final = 1.5
 """L_m / L_s: the magnetising inductance of three windings together over the self-inductance of one (thesis

@@ -18,7 +18,10 @@ from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
 from math import cos, gcd, pi, sin
-from typing import Final
+from typing import Final, Literal
+
+Winding = Literal[0, 1, 2]
+"""A phase's winding, in the frame of the machine models."""
 
 PHASES: Final = 3
 SECTOR_RAD: Final = pi / 3.0

@@ -3,8 +3,8 @@
 from typing import Protocol
 
 from core.machines.parameters import ChannelNames
-from core.recordings.tables.layout import ANY_LAYOUT, TableLayout, TableScaling
 from core.signals.terminals import LINES, PHASES
+from core.table_layout import ANY_LAYOUT, TableLayout, TableScaling
 
 
 class OfAMotor(Protocol):

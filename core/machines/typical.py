@@ -15,10 +15,9 @@ They are no more than a beginning. One motor of a rating differs from the next b
 of a high slip by more. Only a start of the motor itself, or its data sheet, tells its own parameters.
 """
 
+from bisect import bisect
 from dataclasses import dataclass, replace
 from math import exp, log, sqrt
-
-import numpy as np
 
 from core.machines.parameters import (
     MachineParameters,
@@ -269,5 +268,9 @@ def _ends(interval: tuple[float, float]) -> str:
 
 
 def _at(per_unit: tuple[float, ...], nameplate: Nameplate) -> float:
-    power = log(nameplate.rated_power_W)
-    return exp(float(np.interp(power, np.log(POWERS_W), np.log(per_unit))))
+    """Return a value at a motor's power: its log lies on a line in the log of the power."""
+    power_W = nameplate.rated_power_W
+    place = bisect(POWERS_W, power_W, 1, len(POWERS_W) - 1)
+    (low_W, high_W), (low, high) = POWERS_W[place - 1 : place + 1], per_unit[place - 1 : place + 1]
+    share = log(min(max(power_W, low_W), high_W) / low_W) / log(high_W / low_W)
+    return low * exp(share * log(high / low))

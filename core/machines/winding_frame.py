@@ -5,16 +5,14 @@ of sequence a-c-b is mirrored, so that rotation, slip and load always count posi
 """
 
 from math import pi, sqrt
-from typing import Literal
 
 import numpy as np
 
 from core.machines.base import Array
 from core.machines.parameters import Connection
+from core.machines.stator_winding import Winding
 from core.signals.clarke import inverse_clarke
 from core.signals.sequence import PhaseSequence
-
-Winding = Literal[0, 1, 2]
 
 _TERMINAL_WINDINGS: dict[tuple[Connection, PhaseSequence], tuple[Winding, Winding, Winding]] = {
     (Connection.STAR, PhaseSequence.ABC): (0, 1, 2),

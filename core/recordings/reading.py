@@ -10,10 +10,10 @@ from core.recordings.comtrade import read_combined_comtrade, read_comtrade
 from core.recordings.comtrade.envelope import read_comtrade_envelope
 from core.recordings.envelope import Envelope, IntervalsOf, envelope_of
 from core.recordings.errors import RecordingError, RecordingTooLongError
-from core.recordings.tables.layout import ANY_LAYOUT, TableLayout
 from core.recordings.tables.reading import TABLE_READERS
 from core.recordings.tables.recording import read_table_recording
 from core.recordings.waveform import Recording
+from core.table_layout import ANY_LAYOUT, TableLayout
 
 MOST_VALUES_HELD = 4_000_000
 """Of a recording that is read for its envelope alone, longer ones are read block by block."""

@@ -18,7 +18,8 @@ from core.diagnosis.channel_errors import channel_of
 from core.diagnosis.turns_place import axis_of, phases_of
 from core.machines.base import Array
 from core.machines.parameters import Connection, Motor
-from core.machines.winding_frame import Winding, terminal_winding
+from core.machines.stator_winding import Winding
+from core.machines.winding_frame import terminal_winding
 from core.normal_distribution import NORMAL_95
 from core.signals.sequence import PhaseSequence
 

@@ -5,7 +5,7 @@ from typing import Any, cast
 
 from core.condition.assessment import Declared, Level, Phases, Reference
 from core.condition.severity import Interval
-from core.machines.winding_frame import Winding
+from core.machines.stator_winding import Winding
 from core.time_stamps import nanoseconds, rfc3339
 
 

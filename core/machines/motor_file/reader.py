@@ -34,7 +34,7 @@ from core.machines.parameters import (
 from core.machines.sensors import SensorClass
 from core.machines.stator_winding import StatorWinding
 from core.machines.typical import tolerances_of, typical_parameters
-from core.recordings.tables.layout import TableScaling
+from core.table_layout import TableScaling
 
 TABLES = (
     "nameplate",

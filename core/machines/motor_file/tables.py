@@ -1,7 +1,7 @@
 """How a motor's tables of samples are read: what its file says of their rate, scale and offset."""
 
 from core.machines.motor_file.table import MotorTable
-from core.recordings.tables.layout import PhaseFactors, TableScaling
+from core.table_layout import PhaseFactors, TableScaling
 
 SAMPLE_RATES_HZ = (1.0, 1e8)
 NO_OFFSET = (0.0, 0.0, 0.0)

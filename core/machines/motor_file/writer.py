@@ -23,7 +23,7 @@ from core.machines.parameters import (
     WoundRotor,
 )
 from core.machines.sensors import SensorClass
-from core.recordings.tables.layout import TableScaling
+from core.table_layout import TableScaling
 
 Interval = tuple[float, float]
 

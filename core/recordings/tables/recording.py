@@ -15,10 +15,10 @@ from core.recordings.channel_roles import ChannelRole, channel_roles
 from core.recordings.errors import RecordingError, quoted
 from core.recordings.length import check_length
 from core.recordings.tables.dates import date_in_name
-from core.recordings.tables.layout import ANY_LAYOUT, TableLayout, TableScaling
 from core.recordings.tables.reading import read_table
 from core.recordings.tables.table import Column, Table
 from core.recordings.waveform import Channel, Quantity, Recording
+from core.table_layout import ANY_LAYOUT, TableLayout, TableScaling
 
 SAME_RATE = 0.01
 """A rate that is given may differ from that of the file by so much, relatively."""

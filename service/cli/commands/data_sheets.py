@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from core.commissioning.data_sheet import Unit, Values
+from core.commissioning.data_sheet_forms import Unit, Values
 from core.machines.stator_winding import WindingKind
 from service.cli.commands.options import Json
 

@@ -15,10 +15,6 @@ from core.commissioning.catalogue_data import FIGURES, CatalogueData, check_figu
 from core.commissioning.circuit_doubts import circuit_doubts
 from core.commissioning.data_sheet import (
     COPPER_C,
-    Impedances,
-    Reading,
-    Unit,
-    Values,
     check_inertia,
     intervals_of_data_sheet,
     ohm_per_unit,
@@ -27,6 +23,7 @@ from core.commissioning.data_sheet import (
     winding_parameters,
     winding_resistance_ohm,
 )
+from core.commissioning.data_sheet_forms import Impedances, Reading, Unit, Values
 from core.commissioning.errors import CommissioningError
 from core.machines.motor_file.error import MotorFileError
 from core.machines.motor_file.reader import motor_from_table, read_plate

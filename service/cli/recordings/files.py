@@ -5,7 +5,7 @@ from pathlib import Path
 from core.error_words import one_line
 from core.recordings import Recording, RecordingError, read
 from core.recordings.reading import mended_by
-from core.recordings.tables.layout import ANY_LAYOUT, TableLayout
+from core.table_layout import ANY_LAYOUT, TableLayout
 from service.cli.output import CommandError
 
 

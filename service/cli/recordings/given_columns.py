@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from core.machines.parameters import Motor
-from core.recordings.tables.layout import PhaseFactors
+from core.table_layout import PhaseFactors
 from service.cli.output import WRONG_USE, CommandError
 
 SETS = (("ia", "ib", "ic"), ("va", "vb", "vc"), ("vab", "vbc", "vca"))

@@ -6,14 +6,11 @@ from math import pi
 import pytest
 
 from core.commissioning.data_sheet import (
-    Impedances,
-    Reading,
-    Unit,
-    Values,
     intervals_of_data_sheet,
     winding_parameters,
     winding_resistance_ohm,
 )
+from core.commissioning.data_sheet_forms import Impedances, Reading, Unit, Values
 from core.commissioning.errors import CommissioningError
 from core.machines.parameters import Connection, MachineParameters, Nameplate
 

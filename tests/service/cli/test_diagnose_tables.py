@@ -17,7 +17,7 @@ from scipy.io import savemat
 from core.machines.motor_file.reader import read_motor
 from core.machines.motor_file.writer import write_motor
 from core.recordings import Recording, comtrade
-from core.recordings.tables.layout import TableScaling
+from core.table_layout import TableScaling
 from service.cli.app import main
 from testing.machines.motors import REFERENCE
 from testing.machines.phase_circuits import Fault, recording, running

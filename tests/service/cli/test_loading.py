@@ -3,7 +3,7 @@
 import subprocess
 import sys
 
-SLOW = {"alembic", "fastapi", "httpx", "lxml", "numba", "pandas", "scipy", "sqlalchemy"}
+SLOW = {"alembic", "fastapi", "httpx", "lxml", "numba", "numpy", "pandas", "scipy", "sqlalchemy"}
 """Each takes longer to load than the help of a command may take."""
 
 

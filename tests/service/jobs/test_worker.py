@@ -12,8 +12,8 @@ from core.diagnosis.verdict import Verdict
 from core.machines.parameters import ChannelNames
 from core.recordings import Channel, Quantity, Recording
 from core.recordings.comtrade.writer import write
-from core.recordings.tables.layout import TableScaling
 from core.starts.measuring import measure_start
+from core.table_layout import TableScaling
 from core.time_stamps import nanoseconds
 from service.jobs.limits import JobLimits
 from service.jobs.runner import JobRunner

@@ -7,7 +7,7 @@ from core.condition.assessment import Assessment, Change, Level, Reference
 from core.condition.kinds import Kind
 from core.condition.verdict.condition import Condition
 from core.condition.verdict.judging import condition_of
-from core.machines.winding_frame import Winding
+from core.machines.stator_winding import Winding
 from core.units import NANOSECONDS_PER_DAY
 from testing.machines.motors import REFERENCE as MOTOR
 
