@@ -8,8 +8,11 @@ from time import perf_counter
 from typing import ParamSpec, TypeVar
 from unittest.mock import patch
 
-from benchmarks.stopwatch import best_of
+import numpy as np
+
+from benchmarks.stopwatch import best_of, processor_time_of
 from core.diagnosis.stator import diagnose
+from core.findings.examining import examine
 from core.machines.parameters import Motor
 from core.machines.playback import Playback
 from core.machines.running import SteadyRunning
@@ -46,6 +49,15 @@ def measure() -> Iterator[str]:
                     f"{result.evaluations} evaluations, {result.verdict} {result.phase} {result.mu_f:.4f} "
                     f"(truth 0.0500), {THESIS_SECONDS / taken:.0f} times faster than the thesis"
                 )
+    for motor in ALL:
+        record = recording(running(motor, 0.5, fault=Fault(0.05, 1)), seconds=0.5, noise=0.005)
+        parts = {
+            "one pass over its samples": partial(np.add.reduce, record.samples, axis=1),
+            "diagnosis": partial(diagnose, record, motor),
+            "examination of it all": partial(examine, record, motor),
+        }
+        spent = (f"{name} {1e3 * processor_time_of(25, part):.2f} ms" for name, part in parts.items())
+        yield f"processor time, 0.5 s record, {motor.name:10s}: {', '.join(spent)}"
     first = best_of(3, _first_call)
     yield f"a fresh process, machine code cached: {first:.2f} s from its start to its end"
 
