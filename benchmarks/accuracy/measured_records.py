@@ -213,29 +213,43 @@ def _itsc_table(name: str, found: dict[tuple[str, int], Diagnosis]) -> Iterator[
         ]
         levels = _levels(kept)
         means[label] = float(levels.mean()) if levels.size else float("nan")
-        right = sum(one.phase == label[0].lower() for one in kept)
+        named, likeliest, _ = _phases([(label, one) for one in kept])
         verdicts = ", ".join(sorted({str(one.verdict) for one in kept}))
         span = (
             [f"{means[label]:.2%}", f"{levels.min():.2%} to {levels.max():.2%}"] if levels.size else [""] * 2
         )
-        phases = f"{right} of {len(kept)}" if label != "HLT" else ""
-        rows.append([label, f"{len(kept)}", phases, *span, verdicts])
+        phases = [f"{named} of {len(kept)}", f"{likeliest}"] if label != "HLT" else [""] * 2
+        rows.append([label, f"{len(kept)}", *phases, *span, verdicts])
     sure = [
         (label, one) for (label, _), one in found.items()
         if label != "HLT" and int(label[1:]) >= ITSC_SURE_PERCENT
     ]  # fmt: skip
-    right = sum(one.phase == label[0].lower() for label, one in sure)
+    named, likeliest, wrong = _phases(sure)
     ordered = all(
         means[f"{phase}{low}"] < means[f"{phase}{high}"]
         for phase in "ABC"
         for low, high in pairwise((10, 20, 30, 40))
     )
     yield (
-        f"Currents only, {name}: phase right in {right} of {len(sure)} at {ITSC_SURE_PERCENT} % and above "
-        f"({mark(right == len(sure))}); order of mu_f kept in every phase: {mark(ordered)}."
+        f"Currents only, {name}, at {ITSC_SURE_PERCENT} % and above: the right phase is named in {named} of "
+        f"{len(sure)} ({mark(named == len(sure))}) and the likeliest in {likeliest}, a wrong one is named in "
+        f"{wrong} ({mark(wrong == 0)}); order of mu_f kept in every phase: {mark(ordered)}."
     )
     yield ""
-    yield from table(["label", "records", "phase right", "mu_f, mean", "range", "verdicts"], rows)
+    header = ["label", "records", "phase named, rightly", "likeliest", "mu_f, mean", "range", "verdicts"]
+    yield from table(header, rows)
+
+
+def _phases(found: Sequence[tuple[str, Diagnosis]]) -> tuple[int, int, int]:
+    """Of how many records the right phase is named, is the likeliest one, and a wrong one is named."""
+    right = sum(one.phase == label[0].lower() for label, one in found)
+    likeliest = sum(_likeliest(one) == label[0].lower() for label, one in found)
+    return right, likeliest, sum(one.phase is not None for _, one in found) - right
+
+
+def _likeliest(one: Diagnosis) -> str | None:
+    probabilities = one.phase_probabilities
+    return None if probabilities is None else "abc"[int(np.argmax(probabilities))]
 
 
 def _levels(results: Sequence[Diagnosis]) -> Array:

@@ -3,15 +3,15 @@
 from pathlib import Path
 
 from benchmarks.page_of_subjects import PageOfSubjects
-from benchmarks.winding import records, table
+from benchmarks.winding import over_time, records, table
 
 PAGE = Path("docs/evidence/winding.md")
 PREAMBLE = """\
 # Shorted turns inside one coil
 
 Turns that are shorted inside one coil share its slots: their leakage links the rest of the coil, and their
-axis is the coil's. Asked: do the equations of this (`core/machines/coil_fault.py`) hold, and what does one
-record tell? All figures are simulated.
+axis is the coil's. Asked: do the equations of this (`core/machines/coil_fault.py`) hold, and what do one
+record and records over time tell? All figures are simulated.
 
 **Method.** The equations are compared with a circuit for every coil (`ied_sim/motor/coils.py`, solved at
 one slip by `testing/machines/slot_faults.py`), which shares nothing with them: winding functions slot by
@@ -38,6 +38,9 @@ little.
 No phase is named wrongly, of 3,137. Of 2,400 records without shorted turns 14 are called, all with an unknown
 asymmetry.
 
+Followed over records of these circuits, 36 of 36 motors with 1 % are named, 32 with 98 % or more; with the
+winding in the file all 60 axes that are told are right.
+
 **Falls short.** The study that this follows called 37, 63 and 100 % of 3 % in motors of 0.8, 7.5 and 160 kW
 with channels of 1 %; here 25, 78 and 100 %. Without unknown asymmetries as a cause, and with channels of
 0.2 %, it called 78 and 82 % of 2 and 3 % at 0.8 kW, and 80 and 98 % at 7.5 kW; here 20 and 50 %, and 35 and
@@ -49,6 +52,7 @@ SUBJECTS = {
     "shapes": table.shapes,
     "faults": records.faults,
     "sound": records.sound,
+    "series": over_time.series,
 }
 
 if __name__ == "__main__":

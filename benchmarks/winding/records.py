@@ -207,7 +207,7 @@ def faults(pool: Executor, *, quick: bool) -> list[Section]:
     count = 3 if quick else 40
     cells = list(product(POWERS_KW, CLASSES, (False, True), LEVELS))
     trials = [
-        Trial(1_000 * c + k, power, CLASSES[name], level, has_winding=has, connection=_connection(k))
+        Trial(1_000 * c + k, power, CLASSES[name], level, has_winding=has, connection=connection_of(k))
         for c, (power, name, has, level) in enumerate(cells)
         for k in range(count)
         if level * 8 <= 1
@@ -290,5 +290,6 @@ OF_DISTURBANCES = {
 }
 
 
-def _connection(k: int) -> Connection:
+def connection_of(k: int) -> Connection:
+    """Return how a motor's windings are connected: one in four in delta."""
     return Connection.DELTA if k % 4 == 3 else Connection.STAR

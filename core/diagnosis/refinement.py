@@ -2,8 +2,7 @@
 
 scipy.optimize.least_squares finds the same minima in as many rounds, but takes nearly twice the time a fit,
 and its import takes as long as ten diagnoses; `python -m benchmarks.refinement` measures both. The Jacobian
-comes from central differences, all of them one batch of compiled steady states. The covariance
-allows for coloured noise, on currents and voltages: it is how their phasors vary from cycle to cycle.
+comes from central differences, all of them one batch of compiled steady states.
 
 The delay between a relay's currents and voltages has a prior: it is a few sample times, rarely more. A light
 load on a strongly unbalanced supply leaves delay and load nearly indistinguishable, and the prior decides;
@@ -17,19 +16,15 @@ import numpy as np
 
 from core.diagnosis.case import Case
 from core.diagnosis.fundamental import Fundamental, axis_phasors, components
-from core.diagnosis.student_t import student_t_quantile
 from core.machines.base import Array, StatorModel
 from core.machines.candidates import Candidates
 from core.machines.running import SteadyRunning
 
-CONFIDENCE = 0.95
 MOST_ROUNDS = 40
 OFFSET_SCALE_S = 100e-6
 """Half width at half maximum of the Cauchy distribution of the offset between a relay's channels."""
 ADMITTANCE_STEP = 1e-4
 """Step of the difference quotient of currents by voltages, a share of the forward voltage."""
-CONVERGED = 0.01
-"""Share of the misfit by which a converged fit may still improve."""
 POOR, GOOD = 0.25, 0.75
 """Shares of the promised fall of the misfit: a step that keeps less is followed by shorter ones, one that
 keeps more by longer ones."""
@@ -91,54 +86,25 @@ class Fit:
     misfit : float
         Squared distance of the compared components, weighted by what noise and the sensors' class make of
         them, prior included: minus twice the log likelihood, but for a constant.
-    left : complex
-        Backward-turning component of the residual, peak phasor at the record's fundamental [A, winding].
-    is_sound : bool
-        Whether the search ended at a minimum, in periodic running, which tells its unknowns apart.
-    standard_error : dict of str to float
-        Standard error of each unknown, by name.
-    degrees_of_freedom : int
-        Degrees of freedom of the noise behind the standard errors.
-    at_bound : tuple of str
-        Names of unknowns that ended on their bound and have no standard error.
     evaluations : int
         Number of simulated candidates or evaluated points.
-    response : dict of str to ndarray, shape (4,)
-        Change of each unknown that is not at its bound, by one ampere more of each measured component.
     """
 
     candidate: Candidates
     misfit: float
-    left: complex
-    is_sound: bool
-    standard_error: dict[str, float]
-    degrees_of_freedom: int
-    at_bound: tuple[str, ...]
     evaluations: int
-    response: dict[str, Array]
 
     def value(self, name: str) -> float:
         """Return the fitted value of an unknown."""
         return float(getattr(self.candidate, name)[0])
-
-    def interval(self, name: str) -> tuple[float, float]:
-        """Return the 95 % confidence interval of an unknown; its bound alone where it ended on one."""
-        if name in self.at_bound:
-            return self.value(name), self.value(name)
-        reach = (
-            student_t_quantile(0.5 + CONFIDENCE / 2.0, self.degrees_of_freedom) * self.standard_error[name]
-        )
-        return self.value(name) - reach, self.value(name) + reach
 
 
 class Refinement:
     """A local fit on one record, for any hypothesis.
 
     Components are weighted by what noise and the sensors' class make of each: noise on the voltages, say,
-    falls mostly on the backward-turning current, which meets the machine's least impedance.
-    `noise` is the covariance of the current's components that the record's noise leaves [A^2], and
-    `backward_noise_A` the standard deviation of the backward-turning phasor, peak; `running` is the motor on
-    the record's voltage.
+    falls mostly on the backward-turning current, which meets the machine's least impedance. `running` is the
+    motor on the record's voltage.
 
     Parameters
     ----------
@@ -160,8 +126,6 @@ class Refinement:
             model, case.motor, case.supply.angular_frequency, axis_phasors(voltage.components)
         )
         passed = self.admittance(near)
-        self.noise = current.covariance + passed @ voltage.covariance @ passed.T
-        self.backward_noise_A = sqrt(self.noise[2, 2] + self.noise[3, 3])
         cycles = self.record.cycles
         sensors = (_channel_ratio(case) * abs(current.forward)) ** 2 / COMPONENTS_OF_A_RATIO * np.eye(4)
         weighed = current.shrunk(cycles) + passed @ voltage.shrunk(cycles) @ passed.T + sensors
@@ -187,7 +151,7 @@ class Refinement:
                 damping = damping / 4.0 if damping > FIRST_DAMPING else 0.0
             if moved.misfit < point.misfit:
                 point = moved
-        return self._finished(point, unknowns, evaluations=rounds * (1 + 2 * len(unknowns)))
+        return Fit(point.candidate, point.misfit, evaluations=rounds * (1 + 2 * len(unknowns)))
 
     def admittance(self, candidate: Candidates) -> Array:
         """Return how the current's components follow the voltage's at a candidate."""
@@ -218,8 +182,7 @@ class Refinement:
             values[2 + 2 * k] = max(values[0] - one.step, one.lower)
             steps[k] = values[1 + 2 * k] - values[2 + 2 * k]
         modelled = self._modelled(self.running, batch)
-        residual = self.record.current.components - modelled[0]
-        observed = self._whitening @ residual
+        observed = self._whitening @ (self.record.current.components - modelled[0])
         slopes = self._whitening @ ((modelled[1::2] - modelled[2::2]) / steps[:, np.newaxis]).T
 
         offset = float(candidate.time_offset_s[0]) / OFFSET_SCALE_S
@@ -228,40 +191,9 @@ class Refinement:
         prior = np.array([weight / OFFSET_SCALE_S if one.name == TIME_OFFSET else 0.0 for one in unknowns])
         return _Point(
             candidate=candidate,
-            residual=residual,
             misfit=float(observed @ observed) + 2.0 * log1p(offset**2),
             rows=np.append(-observed, weight * offset),
             slopes=np.vstack([slopes, prior]),
-        )
-
-    def _finished(self, point: "_Point", unknowns: tuple[Unknown, ...], evaluations: int) -> Fit:
-        free = _free(point, unknowns)
-        slopes = point.slopes[:, free]
-        # Reduction of the misfit that one more step would bring.
-        gain = float(np.sum((slopes @ _step(point, unknowns, 0.0)[free]) ** 2))
-        noise = self._whitening @ self.noise @ self._whitening.T
-        seen = [one.name for one, is_free in zip(unknowns, free, strict=True) if is_free]
-        try:
-            inverse = np.linalg.inv(slopes.T @ slopes)
-            filling = slopes[:4].T @ noise @ slopes[:4] + np.outer(slopes[4], slopes[4])
-            errors = np.sqrt(np.diag(inverse @ filling @ inverse)).tolist()
-            responses = inverse @ slopes[:4].T @ self._whitening
-        except np.linalg.LinAlgError:
-            # The record does not identify the unknowns: all their values fit equally well.
-            errors = [float("inf")] * len(seen)
-            responses = np.full((len(seen), 4), np.inf)
-        balanced = self.running.state(point.candidate).balanced[0]
-        return Fit(
-            candidate=point.candidate,
-            misfit=point.misfit,
-            left=complex(point.residual[2], point.residual[3]),
-            is_sound=gain <= CONVERGED * (1.0 + point.misfit)
-            and bool(np.isfinite(errors).all() and balanced),
-            standard_error=dict(zip(seen, errors, strict=True)),
-            degrees_of_freedom=self.record.cycles - 1,
-            at_bound=tuple(one.name for one in unknowns if one.name not in seen),
-            evaluations=evaluations,
-            response=dict(zip(seen, responses, strict=True)),
         )
 
 
@@ -269,13 +201,11 @@ class Refinement:
 class _Point:
     """One candidate with the misfit linearised about it.
 
-    residual: measured minus modelled components (4,) [A].
     rows, slopes: modelled minus measured components over their standard deviation, (4,), and below them the
     prior's row; their derivatives by the unknowns, (5, unknowns).
     """
 
     candidate: Candidates
-    residual: Array
     misfit: float
     rows: Array
     slopes: Array

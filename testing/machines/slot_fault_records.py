@@ -60,6 +60,7 @@ class SlotFaultCase:
     relative_voltage: V1 over the rated one.  harmonics: of the voltage.  reverse: the supply turns a-c-b.
     sensors: errors of the channels are drawn from this class, uniform, by `seed`.  common_delay_s: of the
     currents.  noise: white, over rated values, rms.  seed: also of noise and of the supply's angle.
+    record: its number among those of a motor: channels stay, noise and the supply's angle are others.
     inertia_kgm2: added to the motor's, in time alone: the speed of a steady case is constant.
     """
 
@@ -78,6 +79,7 @@ class SlotFaultCase:
     sample_rate_hz: float = 4_000.0
     duration_s: float = 0.5
     seed: int = 0
+    record: int = 0
     cage: Cage = USUAL_CAGE
     inertia_kgm2: float = 0.0
 
@@ -116,7 +118,7 @@ class SlotFaultCase:
         w, delays_s = self.motor.nameplate.rated_angular_frequency, self._delays_s()
         times = np.arange(round(self.duration_s * self.sample_rate_hz)) / self.sample_rate_hz
         samples = np.zeros((6, times.size))
-        angle = float(np.random.default_rng([self.seed, 2]).uniform(0.0, 2 * pi))
+        angle = float(np.random.default_rng([self.seed, 2, self.record]).uniform(0.0, 2 * pi))
         waves = [(1, true.line_current, true.phase_voltage)]
         slip = 2.0 - true.slip if self.reverse else true.slip
         for harmonic in self.harmonics:
@@ -128,7 +130,7 @@ class SlotFaultCase:
             phasors = np.concatenate((current, voltage))[:, None]
             phase = order * (w * (times - delays_s[:, None]) + angle)
             samples += np.sqrt(2) * np.real(phasors * np.exp(1j * phase))
-        random = np.random.default_rng([self.seed, 3])
+        random = np.random.default_rng([self.seed, 3, self.record])
         plant = self.plant()
         return record_of(plant.sensors.measure(samples, plant.rated_values, random), self.sample_rate_hz)
 

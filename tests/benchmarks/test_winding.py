@@ -1,6 +1,7 @@
 """Equations of shorted turns inside one coil: what they follow from, and how near all coils come to them."""
 
-from math import pi, radians
+from dataclasses import replace
+from math import degrees, pi, radians
 
 import numpy as np
 import pytest
@@ -8,9 +9,13 @@ from numpy.typing import NDArray
 
 from benchmarks.winding.cases import WINDINGS, Case
 from benchmarks.winding.one_slip import TURN, Terminals, psi_of
+from benchmarks.winding.over_time import followed
+from benchmarks.winding.records import Trial
 from benchmarks.winding.table import fits
+from core.condition.kinds import Kind
 from core.machines.parameters import Connection, Motor
 from testing.machines.rated_motors import rated_motor
+from testing.machines.slot_fault_records import USUAL, drawn_case
 
 Complex = NDArray[np.complex128]
 K = np.sqrt(2 / 3)
@@ -95,3 +100,21 @@ def test_all_coils_come_near_the_equations_of_two_numbers(case: Case) -> None:
     assert max(max(one.misfits) for one in found) < 0.09
     assert max(abs(one.axis_off) for one in found) < 3
     assert max(max(one.on_axis) for one in found) > 0.5
+
+
+def test_a_motor_with_all_its_coils_is_followed_to_phase_and_axis() -> None:
+    found = followed(Trial(700_900, 160.0, USUAL, 0.02))
+    assert found.case.fault is not None
+    for told in (found.without, found.given):
+        assert told.kinds == (Kind.SHORTED_TURNS,)
+        assert told.phase == "abc"[found.case.fault.phase]
+        assert told.level == pytest.approx(found.case.equivalent_level, rel=0.5)
+    assert found.without.axis_deg is None
+    assert found.given.axis_deg == pytest.approx(degrees(found.case.axis_rad))
+
+
+def test_records_of_one_motor_have_its_channels_and_noise_of_their_own() -> None:
+    case = drawn_case(5, level=None, power_kW=7.5, sensors=USUAL)
+    one, other = (replace(case, record=k) for k in (0, 1))
+    assert (one.measured_phasors().line_current == other.measured_phasors().line_current).all()
+    assert (one.steady_recording().samples != other.steady_recording().samples).any()
