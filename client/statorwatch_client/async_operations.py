@@ -1469,6 +1469,8 @@ class AsyncOperations:
     async def delete_recording(self, recording_id: str, *, reason: str) -> None:
         """Delete a recording with its files and diagnoses; it is not pulled from its relay again.
 
+        The same account can undo it for ten minutes.
+
         Parameters
         ----------
         recording_id
@@ -1713,6 +1715,21 @@ class AsyncOperations:
         """
         answer: models.Deletion = await self._document(
             Request("GET", f"/api/v1/deletions/{segment(recording_id)}")
+        )
+        return answer
+
+    async def undo_deletion(self, recording_id: str) -> models.Recording:
+        """Have a recording back that the same account has deleted in the last ten minutes.
+
+        It has its id, files and times again, and waits for its diagnosis.
+
+        Parameters
+        ----------
+        recording_id
+            As a document tells it.
+        """
+        answer: models.Recording = await self._document(
+            Request("POST", f"/api/v1/deletions/{segment(recording_id)}/undo")
         )
         return answer
 

@@ -106,6 +106,7 @@ AuditAction: TypeAlias = Literal[
     "recording-uploaded",
     "report-imported",
     "recording-deleted",
+    "recording-deletion-undone",
     "diagnosis-requested",
     "baseline-set",
     "baseline-deleted",

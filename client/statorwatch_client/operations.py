@@ -1455,6 +1455,8 @@ class Operations:
     def delete_recording(self, recording_id: str, *, reason: str) -> None:
         """Delete a recording with its files and diagnoses; it is not pulled from its relay again.
 
+        The same account can undo it for ten minutes.
+
         Parameters
         ----------
         recording_id
@@ -1694,6 +1696,21 @@ class Operations:
             As a document tells it.
         """
         answer: models.Deletion = self._document(Request("GET", f"/api/v1/deletions/{segment(recording_id)}"))
+        return answer
+
+    def undo_deletion(self, recording_id: str) -> models.Recording:
+        """Have a recording back that the same account has deleted in the last ten minutes.
+
+        It has its id, files and times again, and waits for its diagnosis.
+
+        Parameters
+        ----------
+        recording_id
+            As a document tells it.
+        """
+        answer: models.Recording = self._document(
+            Request("POST", f"/api/v1/deletions/{segment(recording_id)}/undo")
+        )
         return answer
 
     def export_trend(

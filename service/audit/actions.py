@@ -11,6 +11,7 @@ class AuditAction(StrEnum):
     RECORDING_UPLOADED = "recording-uploaded"
     REPORT_IMPORTED = "report-imported"
     RECORDING_DELETED = "recording-deleted"
+    RECORDING_DELETION_UNDONE = "recording-deletion-undone"
     DIAGNOSIS_REQUESTED = "diagnosis-requested"
     BASELINE_SET = "baseline-set"
     BASELINE_DELETED = "baseline-deleted"
@@ -70,6 +71,7 @@ MEANINGS: Mapping[AuditAction, str] = {
     AuditAction.RECORDING_UPLOADED: "Somebody gave the service a recording.",
     AuditAction.REPORT_IMPORTED: "Somebody brought a relay's text report; `after` tells which, and counts.",
     AuditAction.RECORDING_DELETED: "Somebody deleted a recording; `before` is what it was.",
+    AuditAction.RECORDING_DELETION_UNDONE: "Who deleted a recording undid it within ten minutes.",
     AuditAction.DIAGNOSIS_REQUESTED: "Somebody had a recording diagnosed again.",
     AuditAction.BASELINE_SET: "Somebody chose the healthy recordings of a motor, in place of others.",
     AuditAction.BASELINE_DELETED: "Somebody dropped a motor's baseline.",

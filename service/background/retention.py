@@ -48,7 +48,7 @@ class Retention:
         if self._clock.is_settled:
             self._apply_rules(now_ns, monotonic_ns)
             self._sweep.sweep_a_part(now_ns / NANOSECONDS_PER_SECOND)
-        remove_discarded_folders(self._repository, self._store, self._stopping)
+        remove_discarded_folders(self._repository, self._store, now_ns, self._stopping)
 
     def _apply_rules(self, now_ns: int, monotonic_ns: int) -> None:
         if not self._left:

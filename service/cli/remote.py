@@ -114,7 +114,7 @@ def release_relay(url: str, relay: str, *, as_json: bool) -> None:
 
 
 def delete_recording(url: str, recording_id: str, reason: str, *, as_json: bool) -> None:
-    """Delete a recording for good. Raises CommandError."""
+    """Delete a recording; who does can undo it for ten minutes. Raises CommandError."""
     if not reason.strip():
         raise CommandError("--reason: expected a few words, found none")
     with failing_clearly(ServiceError), ServiceClient(url) as service:

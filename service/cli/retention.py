@@ -93,7 +93,7 @@ def _outcomes(
             deleted = rule.forget(batches)
         outcomes.append(Outcome(rule, amount, deleted, listed))
     if not dry_run:
-        remove_discarded_folders(repository, store)
+        remove_discarded_folders(repository, store, time.time_ns())
     return outcomes
 
 

@@ -198,6 +198,13 @@ class RecordingInUseError(StorageError):
         super().__init__(f"recording {recording_id} cannot be deleted: {cause}")
 
 
+class DeletionStaysError(StorageError):
+    """A deletion that cannot be undone, or not by who asks; `cause` says why."""
+
+    def __init__(self, recording_id: str, cause: str) -> None:
+        super().__init__(f"the deletion of recording {recording_id} cannot be undone: {cause}")
+
+
 class FolderGoneError(StorageError):
     """The folder of a record that was about to be added was removed meanwhile: store its files again."""
 

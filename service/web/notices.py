@@ -6,6 +6,8 @@ from typing import Final
 NOTICES: Final[Mapping[str, str]] = {
     "recording-added": "The recording is stored, and waits for its diagnosis.",
     "recording-known": "The motor had this recording already; nothing was stored.",
+    "recording-deleted": "The recording is deleted. You can undo that for ten minutes.",
+    "deletion-undone": "Undone. The recording is there again, and waits for its diagnosis.",
     "diagnosis-queued": "Another diagnosis is queued; load the page again in a few seconds.",
     "logged-out": "You are logged out.",
     "password": "The password is changed. Log in with the new one.",

@@ -178,6 +178,12 @@ class Prepared:
         self.client.post(f"{path}/acknowledgements")
         return path.rpartition("/")[2]
 
+    def deleted(self) -> str:
+        """Return the id of a recording that the same account has deleted."""
+        recording_id = self.recording()
+        self.client.delete(f"{API}/recordings/{recording_id}", params={"reason": "a test"})
+        return recording_id
+
     def shelved(self) -> str:
         alarm = self.alarm()
         assert self.client.put(f"{alarm}/shelving", json=SHELVED).status_code == 200

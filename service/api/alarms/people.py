@@ -28,8 +28,8 @@ from service.api.alarms.schemas import (
 from service.api.context import Context
 from service.api.problems import FieldError, ProblemError, WrongFieldError, problems
 from service.api.times import rfc3339
-from service.api.undo_time import UNDO_NS
 from service.storage.repository.sites import AtSite
+from service.timing.undo_time import UNDO_NS
 
 LONGEST_SHELVING_DAYS = 90
 """What is set aside for longer is forgotten: it is taken out of service, which the lists tell apart."""

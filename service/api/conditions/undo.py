@@ -16,8 +16,8 @@ from service.api.conditions.schemas import Note
 from service.api.context import ApiContext, Context
 from service.api.document import Name
 from service.api.problems import ProblemError, problems
-from service.api.undo_time import UNDO_MINUTES, UNDO_NS
 from service.storage.records import Actor, ConditionEvent
+from service.timing.undo_time import UNDO_MINUTES, UNDO_NS
 
 router = APIRouter(prefix="/motors/{name}", tags=["condition"])
 

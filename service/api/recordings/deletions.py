@@ -12,12 +12,14 @@ from core.diagnosis.verdict import Verdict
 from service.access.permissions import Permission
 from service.api.access.callers import By
 from service.api.access.requirements import require
-from service.api.context import Context
+from service.api.context import ApiContext, Context
 from service.api.document import Document
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
+from service.api.recordings.schemas import Recording
 from service.api.times import Time
-from service.retention.deletion import delete_recording as delete_with_folder
+from service.retention import deletion as deleting
+from service.storage.records import Actor, RecordingEntry
 from service.storage.states import DeletedBy, RecordingSource, RecordingState
 
 router = APIRouter(tags=["recordings"])
@@ -58,10 +60,11 @@ class Deletion(Document):
     dependencies=[require(Permission.RECORDINGS)],
 )
 def delete_recording(context: Context, recording_id: UUID, reason: Reason, caller: By) -> None:
-    """Delete a recording with its files and diagnoses; it is not pulled from its relay again."""
-    delete_with_folder(
-        context.repository, context.store, str(recording_id), reason, by=caller, now_ns=time.time_ns()
-    )
+    """Delete a recording with its files and diagnoses; it is not pulled from its relay again.
+
+    The same account can undo it for ten minutes.
+    """
+    deleting.delete_recording(context.repository, str(recording_id), reason, by=caller, now_ns=time.time_ns())
 
 
 @router.get("/deletions", responses=problems(404), dependencies=[require(Permission.VIEW)])
@@ -81,3 +84,25 @@ def list_deletions(
 def get_deletion(context: Context, recording_id: UUID) -> Deletion:
     """Return what is remembered of one recording that was deleted."""
     return Deletion.model_validate(context.repository.deletion(str(recording_id)))
+
+
+@router.post(
+    "/deletions/{recording_id}/undo",
+    responses=problems(404, 409),
+    dependencies=[require(Permission.RECORDINGS)],
+)
+def undo_deletion(context: Context, recording_id: UUID, caller: By) -> Recording:
+    """Have a recording back that the same account has deleted in the last ten minutes.
+
+    It has its id, files and times again, and waits for its diagnosis.
+    """
+    return Recording.model_validate(undone_deletion(context, str(recording_id), caller))
+
+
+def undone_deletion(context: ApiContext, recording_id: str, by: Actor) -> RecordingEntry:
+    """Undo a deletion, and have the recording diagnosed. Raises NotFoundError, DeletionStaysError."""
+    entry = deleting.undo_deletion(
+        context.repository, context.store, recording_id, by=by, now_ns=time.time_ns()
+    )
+    context.on_new_job()
+    return entry

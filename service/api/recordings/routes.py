@@ -224,10 +224,10 @@ def _add(context: ApiContext, by: Actor, motor: str, files: list[UploadFile]) ->
         )
     except TooManyWaitingError:
         context.repository.discard_stored(stored.digest, now_ns=now_ns)
-        remove_discarded_folder_if_possible(context.repository, context.store, stored.digest)
+        remove_discarded_folder_if_possible(context.repository, context.store, stored.digest, now_ns)
         raise
     if not added.created:
-        remove_discarded_folder_if_possible(context.repository, context.store, stored.digest)
+        remove_discarded_folder_if_possible(context.repository, context.store, stored.digest, now_ns)
     return added
 
 

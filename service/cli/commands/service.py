@@ -201,7 +201,10 @@ def delete(
     *,
     as_json: Json = False,
 ) -> None:
-    """Delete a recording with its files and diagnoses, for good; it is not pulled from its relay again."""
+    """Delete a recording with its files and diagnoses; it is not pulled from its relay again.
+
+    You can undo that for ten minutes, on the page of the recordings.
+    """
     from service.cli.remote import delete_recording
 
     delete_recording(url, recording, reason, as_json=as_json)

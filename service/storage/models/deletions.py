@@ -5,13 +5,15 @@ from sqlalchemy.orm import Mapped, mapped_column
 
 from core.diagnosis.verdict import Verdict
 from service.storage.models.base import Base
-from service.storage.states import DeletedBy, RecordingSource, RecordingState
+from service.storage.states import ClockQuality, DeletedBy, RecordingSource, RecordingState
 
 
 class DeletionRow(Base):
     """A recording that was deleted, under the id that it had.
 
     waveform: what identifies its samples, whatever its files were called; None where none were stored.
+    account: who deleted it; None where a rule did.  remote_modified_ns to joined_id: as the recording had
+    them, for who undoes the deletion.
     """
 
     __tablename__ = "deletions"
@@ -30,7 +32,16 @@ class DeletionRow(Base):
     recorded_ns: Mapped[int | None]
     deleted_ns: Mapped[int]
     deleted_by: Mapped[DeletedBy]
+    account: Mapped[str | None]
     reason: Mapped[str]
+    remote_modified_ns: Mapped[int | None]
+    fetched_ns: Mapped[int | None]
+    clock_offset_ns: Mapped[int | None]
+    clock_uncertainty_ns: Mapped[int | None]
+    clock_quality: Mapped[ClockQuality | None]
+    clock_measured_ns: Mapped[int | None]
+    parts: Mapped[tuple[str, ...] | None]
+    joined_id: Mapped[str | None] = mapped_column(String(36))
 
     __table_args__ = (
         Index("ix_deletions_deleted_ns_id", "deleted_ns", "id"),

@@ -51,6 +51,7 @@ from service.storage.repository.recordings.recordings import RecordingRows
 from service.storage.repository.recordings.requests import RecordingRequestRows
 from service.storage.repository.recordings.retention import RetentionRows
 from service.storage.repository.recordings.series import SeriesRows
+from service.storage.repository.recordings.undone_deletions import UndoneDeletionRows
 from service.storage.repository.relays.findings import FindingsRows
 from service.storage.repository.relays.leases import LeaseRows
 from service.storage.repository.relays.links import LinkRows
@@ -108,6 +109,7 @@ class Repository(
     BaselineRows,
     CopyRows,
     DeletionRows,
+    UndoneDeletionRows,
     FolderRows,
     RetentionRows,
     BackupRows,

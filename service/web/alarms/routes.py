@@ -20,8 +20,8 @@ from service.api.alarms.schemas import (
 )
 from service.api.problems import ProblemError
 from service.api.times import rfc3339
-from service.api.undo_time import UNDO_NS
 from service.storage.errors import AlarmActionError
+from service.timing.undo_time import UNDO_NS
 from service.web.addresses import LONGEST, address, own_address
 from service.web.alarms.details import SHELVING_HOURS, alarm_details
 from service.web.alarms.lists import AlarmChoice, AlarmTab, alarm_list, look_of

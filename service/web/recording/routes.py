@@ -14,11 +14,14 @@ from service.access.permissions import Permission
 from service.api.access.requirements import require
 from service.api.pages import decode, encode
 from service.api.problems import ProblemError, WrongFieldError
+from service.api.recordings.deletions import undone_deletion
 from service.api.recordings.diagnoses import queue_diagnosis
 from service.api.recordings.diagnosis_schemas import DiagnosisRequest
 from service.api.recordings.routes import FORM_LIMITS, store_upload
 from service.api.samples.opening import in_turn
+from service.retention.deletion import delete_recording
 from service.storage.states import RecordingState
+from service.timing.undo_time import UNDO_NS
 from service.web.addresses import address
 from service.web.choices import motor_names
 from service.web.recording.comparison import comparison
@@ -32,6 +35,8 @@ router = APIRouter()
 UPLOADS: Final = frozenset({("POST", "/recordings")})
 """Routes that take files."""
 ROWS: Final = 50
+MOST_UNDONE: Final = 10
+"""So many deletions are offered to be undone, each by a button."""
 FARTHEST_S: Final = 1e6
 VIEW = [require(Permission.VIEW)]
 CHANGE = [require(Permission.RECORDINGS)]
@@ -86,6 +91,9 @@ def _list(
         "recording/list.html",
         status=HTTPStatus.OK if refused is None else HTTPStatus.UNPROCESSABLE_ENTITY,
         refused=refused,
+        own_deletions=repository.deleted_by(
+            view.asking.actor.name, since_ns=view.now_ns - UNDO_NS, limit=MOST_UNDONE
+        ),
         title="Recordings" if motor is None else f"Recordings of {motor}",
         recordings=found.items,
         verdicts=verdicts,
@@ -194,3 +202,23 @@ def diagnose_again(view: Looking, recording_id: UUID) -> Response:
     """Queue another diagnosis of the recording with the usual method and model."""
     queue_diagnosis(view.context, view.asking.actor, str(recording_id), DiagnosisRequest())
     return view.done(address("/recordings", str(recording_id)), "diagnosis-queued")
+
+
+@router.post("/recordings/{recording_id}/deletion", dependencies=CHANGE)
+def remove_recording(
+    view: Looking,
+    recording_id: UUID,
+    reason: Annotated[str, Form(min_length=1, max_length=500, pattern=r"^[^\x00]*[^\x00\s][^\x00]*$")],
+) -> Response:
+    """Delete a recording that should not be there, as one of another motor."""
+    deletion = delete_recording(
+        view.context.repository, str(recording_id), reason.strip(), by=view.asking.actor, now_ns=view.now_ns
+    )
+    return view.done(address("/recordings", motor=deletion.motor), "recording-deleted")
+
+
+@router.post("/deletions/{recording_id}/undo", dependencies=CHANGE)
+def undo_deletion(view: Looking, recording_id: UUID) -> Response:
+    """Have a recording back that the same person has just deleted."""
+    entry = undone_deletion(view.context, str(recording_id), view.asking.actor)
+    return view.done(address("/recordings", entry.id), "deletion-undone")

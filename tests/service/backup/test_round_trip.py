@@ -121,7 +121,7 @@ def test_a_recording_that_is_lost_already_keeps_no_back_up_from_being_made(
 def test_the_oldest_back_ups_go_with_what_they_alone_had(data: Data) -> None:
     first = data.record("FIRST")
     names = [data.back_up().manifest.name]
-    delete_recording(data.repository, data.store, first, "a test", now_ns=NOW_NS)
+    delete_recording(data.repository, first, "a test", now_ns=NOW_NS)
     data.record("SECOND")
     names += [data.back_up(keep=2).manifest.name]
     assert len(list((data.directory / POOL).glob("??/*"))) == 2
@@ -157,7 +157,7 @@ def test_a_back_up_is_consistent_while_recordings_come_and_go(data: Data, empty_
         while not ended.is_set():
             ids.append(data.record(new_name()))
             if len(ids) > 5:
-                delete_recording(data.repository, data.store, ids.pop(0), "a test", now_ns=NOW_NS)
+                delete_recording(data.repository, ids.pop(0), "a test", now_ns=NOW_NS)
             next(changes)
 
     writer = Thread(target=come_and_go)

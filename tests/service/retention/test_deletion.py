@@ -11,16 +11,23 @@ from service.collector.records.life import Life, RecordState
 from service.collector.records.listing import ListedRecord
 from service.plant import Plant
 from service.recording_store.folder import FolderStore
-from service.retention.deletion import delete_recording, remove_discarded_folders
+from service.retention.deletion import (
+    delete_recording,
+    remove_discarded_folder_if_possible,
+    remove_discarded_folders,
+)
 from service.storage import NotFoundError, Repository
 from service.storage.errors import FolderGoneError, RecordingInUseError
 from service.storage.records import SERVICE, RecordingEntry, RemoteRecord
 from service.storage.states import DeletedBy, RecordingRequestState, RecordingState
+from service.timing.undo_time import UNDO_NS
 from testing.service.findings import findings_of
 from testing.service.job_runner import RUNNER
 from testing.service.plants import NOW_NS, SECOND_NS, fault, two_motor_plant
 from tests.service.collector.records.test_listing import Entry, understood
 
+AFTER_NS = NOW_NS + UNDO_NS + SECOND_NS
+"""When no deletion of these tests can be undone any more."""
 RELAY, MOTOR = "A1_SEL710", "PUMP-A1"
 REMOTE = RemoteRecord("HR_1", 30, NOW_NS)
 
@@ -72,7 +79,7 @@ def test_all_of_it_goes_and_the_trend_and_the_health_follow(
         now_ns=NOW_NS + SECOND_NS,
     ).recording
     diagnose(repository, NOW_NS + SECOND_NS)
-    deletion = delete_recording(repository, store, second.id, "of another motor", now_ns=NOW_NS + 5)
+    deletion = delete_recording(repository, second.id, "of another motor", now_ns=NOW_NS + 5)
     assert (deletion.id, deletion.name, deletion.digest) == (second.id, "HR_2", stored.digest)
     assert (deletion.reason, deletion.deleted_ns, deletion.deleted_by) == (
         "of another motor",
@@ -91,13 +98,14 @@ def test_all_of_it_goes_and_the_trend_and_the_health_follow(
     ended = repository.recording_request(request.id)
     assert (ended.state, ended.recording_id) == (RecordingRequestState.DIAGNOSED, None)
     assert ended.reason == f"recording {second.id} was deleted: of another motor"
+    remove_discarded_folders(repository, store, AFTER_NS)
     assert folders(store) == {repository.recording(first).digest}
     for ask in (repository.recording, repository.deletion):
         with pytest.raises(NotFoundError):
             ask("nope")
     with pytest.raises(NotFoundError):
-        delete_recording(repository, store, second.id, "again", now_ns=NOW_NS)
-    delete_recording(repository, store, first, "too", now_ns=NOW_NS)
+        delete_recording(repository, second.id, "again", now_ns=NOW_NS)
+    delete_recording(repository, first, "too", now_ns=NOW_NS)
     empty = repository.health(MOTOR)
     assert (empty.diagnosis, empty.last_recording) == (None, None)
 
@@ -110,7 +118,7 @@ def test_a_request_that_waited_for_the_diagnosis_fails_with_the_reason(
     added = repository.add_recording(
         stored, motor=MOTOR, recording_request_id=request.id, now_ns=NOW_NS
     ).recording
-    delete_recording(repository, store, added.id, "a test", now_ns=NOW_NS)
+    delete_recording(repository, added.id, "a test", now_ns=NOW_NS)
     ended = repository.recording_request(request.id)
     assert (ended.state, ended.reason) == (
         RecordingRequestState.FAILED,
@@ -145,9 +153,11 @@ def test_files_that_another_recording_has_too_stay(repository: Repository, store
         repository.add_recording(store.store({"U.CFF": b"samples"}), motor=motor, now_ns=NOW_NS).recording
         for motor in (MOTOR, "FAN-A2")
     ]
-    delete_recording(repository, store, both[0].id, "wrong motor", now_ns=NOW_NS)
+    delete_recording(repository, both[0].id, "wrong motor", now_ns=NOW_NS)
+    remove_discarded_folders(repository, store, AFTER_NS)
     assert folders(store) == {both[1].digest}
-    delete_recording(repository, store, both[1].id, "too", now_ns=NOW_NS)
+    delete_recording(repository, both[1].id, "too", now_ns=NOW_NS)
+    remove_discarded_folders(repository, store, AFTER_NS)
     assert folders(store) == set()
 
 
@@ -159,9 +169,9 @@ def test_an_announced_record_of_a_relay_that_left_the_plant_is_deleted(
     repository.share_relays("ours", [RELAY], most=9, problem=None)
     repository.sync_plant(Plant(sites=(), relays=(), motors=()))
     with pytest.raises(RecordingInUseError, match="is announced"):
-        delete_recording(repository, store, announced.id, "its relay is gone", now_ns=NOW_NS)
+        delete_recording(repository, announced.id, "its relay is gone", now_ns=NOW_NS)
     repository.give_back_relays("ours", [RELAY])
-    deletion = delete_recording(repository, store, announced.id, "its relay is gone", now_ns=NOW_NS)
+    deletion = delete_recording(repository, announced.id, "its relay is gone", now_ns=NOW_NS)
     assert (deletion.state, deletion.size_bytes, deletion.digest) == (RecordingState.ANNOUNCED, 0, None)
     assert repository.recordings(limit=10).items == ()
     repository.sync_plant(two_motor_plant())
@@ -169,23 +179,26 @@ def test_an_announced_record_of_a_relay_that_left_the_plant_is_deleted(
     assert life(state) is Life.REFUSED, "it is not pulled, also when the relay comes back"
 
 
-def test_deleting_a_recording_removes_no_files_of_others(repository: Repository, store: FolderStore) -> None:
-    """Thousands of folders may be waiting: they are the background's work, not that of one request."""
+def test_files_are_removed_by_the_background_when_nobody_may_undo_it_any_more(
+    repository: Repository, store: FolderStore
+) -> None:
+    """Thousands of folders may be waiting: they are its work, not that of one request."""
     ids = [pulled(repository, store, name, name.encode()) for name in ("HR_1", "HR_2", "HR_3")]
     digests = [repository.recording(recording_id).digest for recording_id in ids]
     for recording_id in ids[:2]:
         repository.delete_recording(recording_id, "a test", now_ns=NOW_NS)
     assert digests[1] is not None
     store.set_aside(digests[1])
-    delete_recording(repository, store, ids[2], "a test", now_ns=NOW_NS)
-    assert set(repository.discarded_folders()) == set(digests[:2])
-    assert [path.name for path in store.root.glob("??/*")] == [digests[0]]
-    assert len(list(store.root.glob("deleted/*"))) == 1
+    delete_recording(repository, ids[2], "a test", now_ns=NOW_NS)
+    assert set(repository.discarded_folders()) == set(digests)
+    remove_discarded_folders(repository, store, NOW_NS + UNDO_NS)
+    assert {path.name for path in store.root.glob("??/*")} == {digests[0], digests[2]}
+    assert set(repository.discarded_folders()) == set(digests)
     stopping = Event()
     stopping.set()
-    remove_discarded_folders(repository, store, stopping)
-    assert len(repository.discarded_folders()) == 2, "the service stops"
-    remove_discarded_folders(repository, store)
+    remove_discarded_folders(repository, store, AFTER_NS, stopping)
+    assert len(repository.discarded_folders()) == 3, "the service stops"
+    remove_discarded_folders(repository, store, AFTER_NS)
     assert repository.discarded_folders() == ()
     assert folders(store) == set()
 
@@ -195,7 +208,7 @@ def test_its_relay_is_not_asked_for_it_again(repository: Repository, store: Fold
     ledger = RecordLedger(RELAY, MOTOR, repository)
     record = listed("HR_1")
     assert [state.life for state in ledger.follow([record])] == [Life.STORED]
-    delete_recording(repository, store, recording_id, "a test", now_ns=NOW_NS)
+    delete_recording(repository, recording_id, "a test", now_ns=NOW_NS)
     assert [state.life for state in ledger.follow([record])] == [Life.STORED], "as it has been"
     again = RecordLedger(RELAY, MOTOR, repository)
     (state,) = again.follow([record])
@@ -205,7 +218,7 @@ def test_its_relay_is_not_asked_for_it_again(repository: Repository, store: Fold
 def test_a_record_whose_time_changed_stays_deleted(repository: Repository, store: FolderStore) -> None:
     """The relay's clock was set: all that it has is listed under other times, and pulled once more."""
     recording_id = pulled(repository, store)
-    delete_recording(repository, store, recording_id, "a test", now_ns=NOW_NS)
+    delete_recording(repository, recording_id, "a test", now_ns=NOW_NS)
     ledger = RecordLedger(RELAY, MOTOR, repository)
     record = listed("HR_1", NOW_NS + 3600 * SECOND_NS)
     (state,) = ledger.follow([record])
@@ -217,7 +230,7 @@ def test_a_record_whose_time_changed_stays_deleted(repository: Repository, store
     assert repository.recordings(limit=10).items == ()
     ended = repository.recording_request(request.id)
     assert ended.reason == "the relay's record was deleted here: a test"
-    remove_discarded_folders(repository, store)
+    remove_discarded_folders(repository, store, AFTER_NS)
     assert folders(store) == set()
     (state,) = RecordLedger(RELAY, MOTOR, repository).follow([record])
     assert life(state) is Life.DELETED, "under this time too"
@@ -235,7 +248,7 @@ def test_a_new_record_that_looks_like_a_deleted_one_is_pulled(
         remote=remote,
         now_ns=NOW_NS,
     ).recording
-    delete_recording(repository, store, first.id, "a test", now_ns=NOW_NS)
+    delete_recording(repository, first.id, "a test", now_ns=NOW_NS)
     ledger = RecordLedger(RELAY, MOTOR, repository)
     (state,) = ledger.follow([listed("HR_1", 0)])
     assert life(state) is Life.DELETED
@@ -253,7 +266,7 @@ def test_a_new_record_that_looks_like_a_deleted_one_is_pulled(
 
 def test_a_deleted_recording_can_be_uploaded_again(repository: Repository, store: FolderStore) -> None:
     recording_id = pulled(repository, store)
-    delete_recording(repository, store, recording_id, "a test", now_ns=NOW_NS)
+    delete_recording(repository, recording_id, "a test", now_ns=NOW_NS)
     again = repository.add_recording(
         store.store({"FETCHED.CFG": b"config", "FETCHED.DAT": b"samples"}), motor=MOTOR, now_ns=NOW_NS
     )
@@ -269,7 +282,8 @@ def test_a_folder_removed_before_its_row_is_added_is_noticed(
 ) -> None:
     recording_id = pulled(repository, store)
     stored = store.store({"HR_1.CFG": b"config", "HR_1.DAT": b"samples"})
-    delete_recording(repository, store, recording_id, "a test", now_ns=NOW_NS)
+    delete_recording(repository, recording_id, "a test", now_ns=NOW_NS)
+    remove_discarded_folders(repository, store, AFTER_NS)
     with pytest.raises(FolderGoneError, match="store them again"):
         repository.add_recording(stored, motor=MOTOR, now_ns=NOW_NS)
     stored = store.store({"HR_1.CFG": b"config", "HR_1.DAT": b"samples"})
@@ -286,7 +300,7 @@ def test_uploads_and_deletions_of_the_same_content_lose_no_file(
     def delete_all() -> None:
         while not ended.is_set():
             for entry in repository.recordings(limit=10).items:
-                delete_recording(repository, store, entry.id, "a test", now_ns=NOW_NS)
+                delete_recording(repository, entry.id, "a test", now_ns=NOW_NS)
 
     deleting = Thread(target=delete_all)
     deleting.start()
@@ -299,7 +313,7 @@ def test_uploads_and_deletions_of_the_same_content_lose_no_file(
         seen.append(added.recording)
     ended.set()
     deleting.join()
-    remove_discarded_folders(repository, store)
+    remove_discarded_folders(repository, store, AFTER_NS)
     assert seen
     left = {entry.digest for entry in repository.recordings(limit=10).items}
     assert folders(store) == left
@@ -313,7 +327,7 @@ def test_a_known_record_uploaded_with_another_header_leaves_no_folder(
     for number in range(3):
         stored = store.store({**known, "U.HDR": bytes([number])})
         assert not repository.add_recording(stored, motor=MOTOR, now_ns=NOW_NS).created
-    remove_discarded_folders(repository, store)
+    remove_discarded_folders(repository, store, AFTER_NS)
     assert folders(store) == {first.digest}
 
 
@@ -323,9 +337,11 @@ def test_a_folder_that_cannot_be_removed_is_removed_later(
     recording_id = pulled(repository, store)
     in_the_way = store.root / "deleted"
     in_the_way.write_text("a file where a folder is expected")
-    delete_recording(repository, store, recording_id, "a test", now_ns=NOW_NS)
-    assert len(repository.discarded_folders()) == 1
+    delete_recording(repository, recording_id, "a test", now_ns=NOW_NS)
+    (digest,) = repository.discarded_folders()
+    remove_discarded_folder_if_possible(repository, store, digest, AFTER_NS)
+    assert repository.discarded_folders() == (digest,)
     in_the_way.unlink()
-    remove_discarded_folders(repository, store)
+    remove_discarded_folders(repository, store, AFTER_NS)
     assert repository.discarded_folders() == ()
     assert folders(store) == set()

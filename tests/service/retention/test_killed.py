@@ -11,8 +11,11 @@ from service.configuration.settings import sqlite_url
 from service.recording_store.folder import FolderStore
 from service.retention.deletion import delete_recording, remove_discarded_folders
 from service.storage import Repository, connect
+from service.timing.undo_time import UNDO_NS
 from testing.service.plants import NOW_NS
 
+AFTER_NS = NOW_NS + UNDO_NS + 1
+"""When no deletion of this test can be undone any more."""
 STEPS = ("nothing", "rows", "set aside", "released", "half removed")
 
 
@@ -47,7 +50,8 @@ def delete_and_be_killed(directory: Path, recording_id: str, step: str) -> None:
     store.step = step
     if step == "nothing":
         kill_myself()
-    delete_recording(repository, store, recording_id, "a test", now_ns=NOW_NS)
+    delete_recording(repository, recording_id, "a test", now_ns=NOW_NS)
+    remove_discarded_folders(repository, store, AFTER_NS)
 
 
 @pytest.mark.parametrize("database_url", ["sqlite"], indirect=True)
@@ -65,9 +69,9 @@ def test_killed_at_each_step(repository: Repository, store: FolderStore, tmp_pat
         present = {path.name for path in store.root.glob("??/*")}
         assert known <= present, f"{step}: nothing is missing that the database knows"
         assert present <= known | set(repository.discarded_folders()), f"{step}: nothing is unknown"
-        remove_discarded_folders(repository, store)  # as every service does when it starts
         if step == "nothing":
-            delete_recording(repository, store, added.id, "a test", now_ns=NOW_NS)
+            delete_recording(repository, added.id, "a test", now_ns=NOW_NS)
+        remove_discarded_folders(repository, store, AFTER_NS)  # as every service does when it starts
         assert {path.name for path in store.root.glob("??/*")} == {stays.recording.digest}, step
         assert list(store.root.glob("deleted/*")) == [], step
         assert repository.discarded_folders() == (), step

@@ -22,6 +22,7 @@ from service.retention.deletion import delete_recording, remove_discarded_folder
 from service.retention.unknown_folders import KEPT_DAYS, SETTLED_S, Ages, UnknownFolderSweep
 from service.storage import Repository
 from service.storage.errors import FolderGoneError
+from service.timing.undo_time import UNDO_NS
 from testing.service.plants import NOW_NS
 from tests.service.api.serving import serving
 
@@ -117,7 +118,7 @@ def test_a_folder_that_is_discarded_is_left_to_whoever_discards_it(
     assert not repository.add_recording(late, motor="PUMP-A1", now_ns=NOW_NS).created
     sweep(repository, store, Ages(settled_s=0.0)).sweep(time.time() + 1)
     assert late.digest in folders(store)
-    remove_discarded_folders(repository, store)
+    remove_discarded_folders(repository, store, NOW_NS + UNDO_NS + 1)
     assert folders(store) == known(repository)
 
 
@@ -145,7 +146,8 @@ def test_a_sweep_in_the_midst_of_uploads_takes_no_recordings_files(
             added += 1
             assert entry.digest in folders(store)
             if number % 3 == 0:
-                delete_recording(repository, store, entry.id, "a test", now_ns=NOW_NS)
+                delete_recording(repository, entry.id, "a test", now_ns=NOW_NS)
+                remove_discarded_folders(repository, store, NOW_NS + UNDO_NS + 1)
     finally:
         ended.set()
         sweeping.join()

@@ -113,6 +113,14 @@ FORMS: Changes = {
         lambda it: it.client.post(f"/account/tokens/{it.token()}/revocation"),
         "token-revoked",
     ),
+    "POST /recordings/{recording_id}/deletion": (
+        lambda it: it.client.post(f"/recordings/{it.recording()}/deletion", data={"reason": "a test"}),
+        "recording-deleted",
+    ),
+    "POST /deletions/{recording_id}/undo": (
+        lambda it: it.client.post(f"/deletions/{it.deleted()}/undo"),
+        "recording-deletion-undone",
+    ),
     "POST /people": (
         lambda it: it.client.post("/people", data={"name": "sam", "roles": ["VIEWER"]}),
         "user-added",

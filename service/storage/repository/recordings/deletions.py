@@ -1,8 +1,8 @@
 """Recordings deleted on purpose: their rows go, what they were is remembered, their folders go afterwards.
 
-The rows go first, in one transaction that also notes the folder as discarded. A service that is killed after
-it removes the folder when it starts again. Whoever adds a recording looks, under the same lock, whether its
-folder is still there.
+The rows go first, in one transaction that also notes the folder as discarded. The background removes it,
+after the time in which a person may undo what they deleted. Whoever adds a recording looks, under the same
+lock, whether its folder is still there.
 """
 
 from collections.abc import Callable, Collection
@@ -41,6 +41,7 @@ from service.storage.repository.recordings.copies import forget_outline, release
 from service.storage.repository.recordings.folders import discard_folder, lock_folder
 from service.storage.repository.recordings.recordings import stored_before
 from service.storage.repository.recordings.requests import KIND, fail_row, fail_rows
+from service.storage.repository.recordings.undone_deletions import is_kept_for_undo
 from service.storage.repository.relays.remote_records import of_records, remote_link
 from service.storage.repository.sessions import Order, Sessions, columns_of, found, only, page_of, record_of
 from service.storage.states import DeletedBy, JobState, RecordingState
@@ -70,7 +71,8 @@ class DeletionRows(Sessions):
             cause = in_use(session, row)
             if cause is not None:
                 raise RecordingInUseError(recording_id, cause)
-            deletion = delete_row(session, row, reason, deleted_by, now_ns)
+            account = by.name if deleted_by is DeletedBy.PERSON else None
+            deletion = delete_row(session, row, reason, deleted_by, now_ns, account=account)
             before = {
                 "motor": deletion.motor,
                 "name": deletion.name,
@@ -170,15 +172,16 @@ class DeletionRows(Sessions):
         with self._read() as session:
             return tuple(session.scalars(select(DiscardedFolderRow.digest)))
 
-    def release_folder(self, digest: str, set_aside: Callable[[str], None]) -> None:
+    def release_folder(self, digest: str, set_aside: Callable[[str], None], *, undo_since_ns: int) -> None:
         """Have a discarded folder set aside, unless a recording needs it again.
 
+        One whose recording a person has deleted since a time stays as it is: the deletion may be undone.
         Nobody adds a recording of this content meanwhile.
         """
         with self._write() as session:
             lock_folder(session, digest)
             discarded = session.get(DiscardedFolderRow, digest)
-            if discarded is None:
+            if discarded is None or is_kept_for_undo(session, digest, undo_since_ns):
                 return
             if only(session, select(RecordingRow).where(RecordingRow.digest == digest)) is None:
                 set_aside(digest)
@@ -208,12 +211,20 @@ def in_use(session: Session, row: RecordingRow) -> str | None:
 
 
 def delete_row(
-    session: Session, row: RecordingRow, reason: str, deleted_by: DeletedBy, now_ns: int
+    session: Session,
+    row: RecordingRow,
+    reason: str,
+    deleted_by: DeletedBy,
+    now_ns: int,
+    *,
+    account: str | None = None,
 ) -> Deletion:
     """Delete a locked recording that nothing uses, and return what is remembered of it.
 
     What it tells of its motor's condition goes where a person deletes it. Where a rule does, it stays: what
     later recordings are compared with rests on it.
+
+    account: of the person, who may undo it.
     """
     files = session.scalars(select(RecordingFileRow).where(RecordingFileRow.recording_id == row.id)).all()
     deletion = DeletionRow(
@@ -231,7 +242,16 @@ def delete_row(
         recorded_ns=row.recorded_ns,
         deleted_ns=now_ns,
         deleted_by=deleted_by,
+        account=account,
         reason=reason,
+        remote_modified_ns=row.remote_modified_ns,
+        fetched_ns=row.fetched_ns,
+        clock_offset_ns=row.clock_offset_ns,
+        clock_uncertainty_ns=row.clock_uncertainty_ns,
+        clock_quality=row.clock_quality,
+        clock_measured_ns=row.clock_measured_ns,
+        parts=row.parts,
+        joined_id=row.joined_id,
     )
     session.add(deletion)
     session.flush()

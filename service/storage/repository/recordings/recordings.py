@@ -99,7 +99,7 @@ class RecordingRows(Sessions):
                     filling = partial(_fill, session, stored=stored, now_ns=now_ns)
                     row = recording_to_fill(session, relay, motor, remote, now_ns, filling)
                 session.flush()
-                _list_files(session, row, stored)
+                list_files(session, row, stored)
                 priority = JobPriority.UPLOAD if relay is None else JobPriority.RELAY_RECORD
                 session.add(new_job(row, method, model, priority, now_ns))
                 if relay is None:
@@ -239,7 +239,7 @@ def fill(session: Session, row: RecordingRow, stored: StoredRecording, now_ns: i
     """Give a recording its files."""
     _fill(session, row, stored, now_ns)
     session.flush()
-    _list_files(session, row, stored)
+    list_files(session, row, stored)
 
 
 def _fill(session: Session, row: RecordingRow, stored: StoredRecording, now_ns: int) -> None:
@@ -262,12 +262,12 @@ def _complete(session: Session, row: RecordingRow, stored: StoredRecording, now_
     before = row.digest
     row.digest = stored.digest
     row.size_bytes = stored.size_bytes
-    _list_files(session, row, stored)
+    list_files(session, row, stored)
     if before is not None:
         discard_folder(session, before, now_ns)
 
 
-def _list_files(session: Session, row: RecordingRow, stored: StoredRecording) -> None:
+def list_files(session: Session, row: RecordingRow, stored: StoredRecording) -> None:
     for file in stored.files:
         session.add(
             RecordingFileRow(

@@ -11,10 +11,10 @@ import pytest
 from core.units import NANOSECONDS_PER_DAY
 from service.alarms.catalogue import CATALOGUE
 from service.api.times import rfc3339
-from service.api.undo_time import UNDO_NS
 from service.storage import Repository
 from service.storage.records import Actor, Alarm, AlarmPlace, AlarmSpec
 from service.storage.states import AlarmKind
+from service.timing.undo_time import UNDO_NS
 from testing.service.plants import NOW_NS
 
 URL = "/api/v1/alarms"

@@ -143,6 +143,10 @@ REQUESTS: Changes = {
         lambda it: it.client.delete(f"{API}/recordings/{it.recording()}", params={"reason": "a test"}),
         "recording-deleted",
     ),
+    "POST /api/v1/deletions/{recording_id}/undo": (
+        lambda it: it.client.post(f"{API}/deletions/{it.deleted()}/undo"),
+        "recording-deletion-undone",
+    ),
     "POST /api/v1/recordings/{recording_id}/diagnoses": (
         lambda it: it.client.post(f"{API}/recordings/{it.recording()}/diagnoses"),
         "diagnosis-requested",

@@ -46,7 +46,7 @@ def test_a_condition_follows_records_that_are_deleted(
     assert (found.state, found.kind) == (State.FAULT, Kind.ROTOR)
     assert found.as_of_ns == repository.recording(ids[-1]).recorded_ns
     for one in ids:
-        delete_recording(repository, store, one, "of another motor", now_ns=NOW_NS)
+        delete_recording(repository, one, "of another motor", now_ns=NOW_NS)
     found = repository.condition(MOTOR)
     assert (found.state, found.kind, found.as_of_ns) == (State.UNKNOWN, Kind.NONE, None)
 

@@ -121,7 +121,7 @@ def test_a_start_that_somebody_deletes_counts_no_more(
     add(recorded, START, 0.0)
     hot = add(recorded, START, 9.0, heat=0.93)
     assert standing(recorded.repository)
-    delete_recording(recorded.repository, store, hot, "of another motor", by=ADA, now_ns=LATER_NS)
+    delete_recording(recorded.repository, hot, "of another motor", by=ADA, now_ns=LATER_NS)
     assert told(recorded.repository) == []
 
 

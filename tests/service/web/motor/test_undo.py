@@ -7,9 +7,9 @@ import pytest
 
 from core.condition.events import EventKind
 from service.api.conditions.undo import latest_to_undo, may_undo
-from service.api.undo_time import UNDO_NS
 from service.storage import Repository
 from service.storage.records import ConditionEvent
+from service.timing.undo_time import UNDO_NS
 from testing.service.plants import NOW_NS
 from tests.service.web.pages import addresses, page
 
