@@ -52,13 +52,16 @@ QUERIES: Mapping[str, Mapping[str, str]] = {
     "/reports/fleet": {"format": "xlsx"},
     "/reports/motor": {"format": "xlsx", "motor": CRUSHER},
     f"{API}/motors": {"health": "true"},
+    "/search": {"text": "sel710"},
 }
 """What routes are asked beside, so that they answer with all that they have."""
 
 ACTING_LISTS = {
     (f"{API}/alarms/acknowledgements"),
+    (f"{API}/alarms/acknowledgements/undo"),
     (f"{API}/recordings"),
     "/alarms/acknowledgements",
+    "/alarms/acknowledgements/undo",
     "/recordings",
 }
 """Routes that act on what their body names. What they refuse is tested below, one by one."""
@@ -287,6 +290,10 @@ def test_what_a_body_names_at_another_site_is_forbidden(places: Places) -> None:
     assert answer.status_code == 403
     answer = places.client.post("/alarms/acknowledgements", data={"alarm": both}, headers=engineer)
     assert answer.status_code == 403
+    undo = f"{API}/alarms/acknowledgements/undo"
+    assert places.client.post(undo, json={"alarms": both}, headers=engineer).status_code == 403
+    form = places.client.post("/alarms/acknowledgements/undo", data={"alarm": both}, headers=engineer)
+    assert form.status_code == 403
     assert {places.repository.alarm(one).state for one in both} == {"unacknowledged"}, "none of them"
     again = {"recording": there[AtSite.RECORDING]}
     answer = places.client.post(f"/motors/{PUMP}/diagnoses", data=again, headers=engineer)
