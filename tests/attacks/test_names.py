@@ -48,10 +48,14 @@ def eve(repository: Repository, store: RecordingStore, tmp_path: Path) -> Iterat
         yield client
 
 
+TABS = ("", "/stator", "/logbook", "/nameplate")
+"""All that show what people have said of a motor."""
+
+
 def words_of_page(client: httpx.Client) -> str:
-    answer = client.get("/motors/PUMP-A1", headers={"Accept": "text/html"})
-    assert answer.status_code == 200
-    return answer.text
+    pages = [client.get(f"/motors/PUMP-A1{tab}", headers={"Accept": "text/html"}) for tab in TABS]
+    assert {page.status_code for page in pages} == {200}
+    return "".join(page.text for page in pages)
 
 
 def words_of_report(client: httpx.Client) -> str:

@@ -14,6 +14,7 @@ SHARED = (
     "core.machines.typical",
     "core.quantity_text",
     "core.recordings",
+    "core.table_layout",
     "core.units",
 )
 """What simulator and diagnosis have in common: what a motor's file says, may say and leaves out, a file

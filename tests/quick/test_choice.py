@@ -122,7 +122,7 @@ def test_changes_are_those_since_the_branch_left_main(tmp_path: Path) -> None:
     [
         ("core/losses/cost.py", "tests/core/losses/"),
         ("service/storage/texts.py", "tests/service/storage/"),
-        ("service/web/templates/load/page.html", "tests/service/web/load/"),
+        ("service/web/templates/starts/all.html", "tests/service/web/starts/"),
         ("tests/docs/test_links.py", "tests/docs/test_links.py"),
     ],
 )

@@ -80,6 +80,7 @@ def test_the_motors_are_asked_for_once(
         return await call_next(request)
 
     with serving(app) as client:
+        requests.clear()  # the server has asked for what it tells of its health
         assert main(["motors", "--url", str(client.base_url), "--json"]) == 0
         assert requests == ["/api/v1/motors"]
         listed = json.loads(capsys.readouterr().out)["motors"]

@@ -3,6 +3,7 @@
 import httpx
 import pytest
 
+from core.classification.classification import NOTHING_SEEN
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from testing.service.answers import answer_of, turns_or_joint
@@ -43,7 +44,8 @@ def test_one_record_that_differs_is_not_believed(client: httpx.Client, recorded:
     for nats in (-2.0, -2.0, 30.0):
         recorded.add(SOUND_ROTOR, classification=answer_of(pulsation=nats))
     found = client.get(f"{MOTOR}/classification").raise_for_status().json()
-    assert found["answer"] == ["healthy"]
+    assert found["answer"] == [], "and nothing is known of the winding"
+    assert found["words"] == NOTHING_SEEN
 
 
 def test_a_recording_tells_what_is_not_told_apart(client: httpx.Client, recorded: ExaminedRecordings) -> None:
