@@ -10,7 +10,15 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.reporting import Section, spread, table
-from benchmarks.winding.records import COMMAND, Disturbance, Trial, connection_of, disturbed, known_motor
+from benchmarks.winding.records import (
+    COMMAND,
+    Disturbance,
+    Trial,
+    case_of,
+    connection_of,
+    disturbed,
+    known_motor,
+)
 from core.condition.following.follower import Follower
 from core.condition.kinds import Kind
 from core.condition.measuring.observing import observe
@@ -18,7 +26,7 @@ from core.condition.observation import Observation
 from core.machines.parameters import Motor
 from core.recordings import read
 from core.recordings.comtrade.writer import write
-from testing.machines.slot_fault_records import USUAL, SlotFaultCase, drawn_case
+from testing.machines.slot_fault_records import USUAL, SlotFaultCase
 
 POWERS_KW = (0.8, 7.5, 160.0)
 LEVELS = (0.005, 0.01, 0.02)
@@ -63,25 +71,13 @@ class Followed:
 
 def followed(trial: Trial) -> Followed:
     """Follow a motor over its records."""
-    case = _case_of(trial)
+    case = case_of(trial)
     with tempfile.TemporaryDirectory() as folder:
         seen = list(_observed(trial, case, Path(folder) / "record.cfg"))
     without, given = (
         _told(known_motor(case, replace(trial, has_winding=one)), seen) for one in (False, True)
     )
     return Followed(trial, case, without, given)
-
-
-def _case_of(trial: Trial) -> SlotFaultCase:
-    case = drawn_case(
-        trial.seed,
-        level=trial.level,
-        power_kW=trial.power_kW,
-        sensors=trial.sensors,
-        connection=trial.connection,
-        most_path_ratio=2.0,
-    )
-    return replace(case, sample_rate_hz=2_000.0, duration_s=0.5)
 
 
 def _observed(trial: Trial, case: SlotFaultCase, path: Path) -> Iterator[Observation]:

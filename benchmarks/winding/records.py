@@ -89,8 +89,8 @@ class Outcome:
         return self.interval[0] <= self.case.equivalent_level <= self.interval[1]
 
 
-def judged(trial: Trial) -> Outcome:
-    """Make the record of a trial, write it as a COMTRADE file, read it and diagnose it."""
+def case_of(trial: Trial) -> SlotFaultCase:
+    """Draw the motor, winding and fault of a trial."""
     case = drawn_case(
         trial.seed,
         level=trial.level,
@@ -99,7 +99,12 @@ def judged(trial: Trial) -> Outcome:
         connection=trial.connection,
         most_path_ratio=2.0,
     )
-    case = replace(case, sample_rate_hz=2_000.0, duration_s=0.5)
+    return replace(case, sample_rate_hz=2_000.0, duration_s=0.5)
+
+
+def judged(trial: Trial) -> Outcome:
+    """Make the record of a trial, write it as a COMTRADE file, read it and diagnose it."""
+    case = case_of(trial)
     if trial.disturbance is Disturbance.SUPPLY:
         case = replace(
             case, unbalance=case.unbalance / max(abs(case.unbalance), 1e-9) * _size(trial, 0.02, 0.06)

@@ -131,14 +131,17 @@ class Classification:
         )
 
     @property
+    def names_causes(self) -> bool:
+        """Whether one cause is told, or some are left open; else nothing is seen, and not all is known."""
+        return self.is_assessed and (self.is_told or bool(self.not_told_apart))
+
+    @property
     def words(self) -> str:
         """The answer as people read it."""
-        if not self.is_assessed:
-            return NOT_ASSESSED
+        if not self.names_causes:
+            return NOTHING_SEEN if self.is_assessed else NOT_ASSESSED
         if self.is_told:
             return words(self.answer.causes)
-        if not self.not_told_apart:
-            return NOTHING_SEEN
         open_ones = [self.answer, *(pair.other for pair in self.not_told_apart)]
         return "not told apart: " + " or ".join(words(one.causes) for one in open_ones)
 
@@ -151,8 +154,7 @@ class Classification:
             The answer; its keys are a contract. Without evidence, or where nothing is seen and nothing is
             known of the winding, it names no cause, with probability 0.
         """
-        assessed = self.is_assessed
-        answered = assessed and self.words != NOTHING_SEEN
+        assessed, answered = self.is_assessed, self.names_causes
         likelihoods = [one for one in self.likelihoods if assessed or one.cause is not Cause.HEALTHY]
         explanations = self.explanations if assessed else ()
         return {

@@ -77,8 +77,8 @@ _PLAIN = (
 _AGAINST_EARTH = re.compile(r"(L[1-3]|[A-Z])[NGE]")
 
 
-MOST_REMEMBERED = 4096
-"""Channels whose words are not looked at again."""
+MOST_REMEMBERED, LONGEST_REMEMBERED = 4096, 256
+"""Channels whose words are not looked at again, and their letters: who sends longer ones holds no memory."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,7 +120,7 @@ def channel_roles(channels: Sequence[tuple[str, str, str]]) -> tuple[ChannelRole
     tuple of ChannelRole
         One role a channel.
     """
-    seen = [_Seen.of(*channel) for channel in channels]
+    seen = [_seen(*channel) for channel in channels]
     numbered = {(one.kind, one.name_code) for one in seen}
     numbered_kinds = {kind for kind, _ in numbered if {(kind, "1"), (kind, "2"), (kind, "3")} <= numbered}
     codes = {unit: [code for one in seen if one.unit == unit for code in one.codes] for unit in ("A", "V")}
@@ -166,9 +166,7 @@ class _Seen:
     terminal: str = ""
 
     @classmethod
-    @lru_cache(maxsize=MOST_REMEMBERED)
     def of(cls, name: str, phase_field: str, unit: str) -> "_Seen":
-        """Return what a channel says; remembered, as all records of a relay have the same channels."""
         word = _UNIT_WORD.fullmatch(unit.strip())
         si_unit, scale = _SI_UNITS.get(word["prefix"] + word["letter"].upper() if word else unit, (unit, 1.0))
         match = _NAME.search(_plain(name).translate(_CYRILLIC_PHASES))
@@ -188,6 +186,15 @@ class _Seen:
     @property
     def codes(self) -> tuple[str, str]:
         return ("", "") if self.is_derived else (self.name_code, self.field_code)
+
+
+_remembered = lru_cache(maxsize=MOST_REMEMBERED)(_Seen.of)
+
+
+def _seen(name: str, phase_field: str, unit: str) -> _Seen:
+    """Return what a channel says; remembered, as all records of a relay have the same channels."""
+    is_short = len(name) + len(phase_field) + len(unit) <= LONGEST_REMEMBERED
+    return (_remembered if is_short else _Seen.of)(name, phase_field, unit)
 
 
 def _plain(name: str) -> str:

@@ -5,8 +5,8 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from core.diagnosis.errors import DiagnosisError
+from core.machines.motor_tables import layout_of
 from core.machines.parameters import Motor
-from core.machines.table_layout import layout_of
 from core.recordings import Recording, RecordingError, read
 from service.recording_store.recording import Source
 

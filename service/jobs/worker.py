@@ -10,8 +10,8 @@ from zoneinfo import ZoneInfo
 
 from core.commissioning.errors import CommissioningError
 from core.diagnosis.errors import DiagnosisError
+from core.machines.motor_tables import layout_of
 from core.machines.parameters import Motor
-from core.machines.table_layout import layout_of
 from core.operation import Operation
 from core.recordings import Recording, RecordingError, read
 from core.recordings.fidelity import fidelity_of

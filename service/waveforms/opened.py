@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from core.machines.motor_tables import layout_of
 from core.machines.parameters import Motor
-from core.machines.table_layout import layout_of
 from core.recordings import Channel, Recording, read
 from core.signals.terminals import LINES, PHASES, Terminals, terminals
 from service.condition.healthy_records import MOST_VALUES

@@ -5,8 +5,8 @@ from concurrent.futures import BrokenExecutor
 from dataclasses import dataclass, field
 
 from core.diagnosis.verdict import FittedParameters, is_relative
+from core.machines.motor_tables import layout_of
 from core.machines.parameters import Motor
-from core.machines.table_layout import layout_of
 from core.recordings.envelope import Envelope
 from core.recordings.reading import read_envelope
 from core.units import NANOSECONDS_PER_SECOND

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.diagnosis.verdict import FittedParameters
+from core.machines.motor_tables import layout_of
 from core.machines.parameters import Motor
-from core.machines.table_layout import layout_of
 from core.recordings import RecordingError, read
 from service.condition.healthy_records import MOST_VALUES, learnt
 from service.recording_store.errors import RecordingStoreError

@@ -13,7 +13,7 @@ from fastapi import APIRouter, Depends, File, Form, Query, Request, Response, Up
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import StreamingResponse
 
-from core.machines.table_layout import layout_of
+from core.machines.motor_tables import layout_of
 from core.operation import Operation
 from core.recordings import Envelope, RecordingError, read_envelope
 from core.recordings.reading import recording_name

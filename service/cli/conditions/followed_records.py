@@ -14,8 +14,8 @@ from core.condition.observation import Observation
 from core.diagnosis.acceptance import accept
 from core.findings.beside_stator import supply_of
 from core.findings.examining import examine
+from core.machines.motor_tables import layout_of
 from core.machines.parameters import Motor
-from core.machines.table_layout import layout_of
 from core.operation import Operation
 from core.recordings import RecordingError, read
 from core.recordings.errors import RecordingTooLongError, UnknownTimeError

@@ -16,7 +16,7 @@ from core.machines.candidates import LoadLaw
 from core.machines.motor_file.error import MotorFileError
 from core.machines.motor_file.reader import read_plate
 from core.machines.motor_file.writer import write_motor
-from core.machines.table_layout import layout_of
+from core.machines.motor_tables import layout_of
 from core.quantity_text import plain, with_unit
 from core.recordings import RecordingError
 from service.cli.output import (

@@ -15,8 +15,8 @@ from core.findings.examining import examine
 from core.findings.findings import Findings
 from core.machines.motor_file.error import MotorFileError
 from core.machines.motor_file.reader import read_motor
+from core.machines.motor_tables import layout_of
 from core.machines.parameters import ParametersSource
-from core.machines.table_layout import layout_of
 from core.machines.typical import COMMISSION
 from core.quantity_text import with_unit
 from core.recordings import RecordingError

@@ -8,7 +8,7 @@ from core.commissioning.errors import CommissioningError
 from core.commissioning.start_detection import start_of
 from core.error_words import one_line
 from core.machines.motor_file.reader import Plate
-from core.machines.table_layout import layout_of
+from core.machines.motor_tables import layout_of
 from core.recordings import Recording, RecordingError, read
 from service.cli.output import CommandError
 from service.client.recording_download import download_recording

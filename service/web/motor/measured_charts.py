@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from core.machines.parameters import Motor
+from core.motor_condition.supply import VOLTAGE_DEVIATION
 from core.thermal.full_load import full_load_current_A
 from service.plant import AveragingStep, MeteredQuantity
 from service.storage import Repository
@@ -16,8 +17,6 @@ PIECES: Final = 240
 """Of the time shown, each with its mean."""
 MINUTES_UP_TO_DAYS: Final = 2.0
 MOST_RECORDS: Final = 400
-VOLTAGE_TOLERANCE: Final = 0.1
-"""Of the rated voltage (NEMA MG-1, 12.44)."""
 KILO: Final = 1000.0
 PERCENT: Final = 100.0
 DIGITS: Final = 4
@@ -72,8 +71,8 @@ def _voltage(name: str, course: Sequence[Measurement], motor: Motor | None, show
         kinds, rated_V = PHASE_VOLTAGES, None
     bands: tuple[Band, ...] = ()
     if rated_V is not None:
-        ends = [round(rated_V * (1.0 + sign * VOLTAGE_TOLERANCE), 1) for sign in (-1.0, 1.0)]
-        bands = (Band(ends[0], ends[1], "rated ±10 % (NEMA MG-1)"),)
+        ends = [round(rated_V * (1.0 + sign * VOLTAGE_DEVIATION), 1) for sign in (-1.0, 1.0)]
+        bands = (Band(ends[0], ends[1], f"rated ±{PERCENT * VOLTAGE_DEVIATION:g} % (NEMA MG-1)"),)
     return _chart("voltage", f"Voltage of {name}", "voltage", "V", course, kinds, shown, bands=bands)
 
 

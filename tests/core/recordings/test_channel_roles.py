@@ -1,5 +1,6 @@
 """Names, phase fields and units as relays of several makes write them."""
 
+import tracemalloc
 from collections.abc import Sequence
 
 import pytest
@@ -191,3 +192,16 @@ def test_a_line_voltage_the_other_way_round_needs_another_beside_it() -> None:
 def test_units_become_si(unit: str, si_unit: str, scale: float) -> None:
     (role,) = channel_roles([("IA", "A", unit)])
     assert (role.unit, role.scale) == (si_unit, scale)
+
+
+def test_long_names_of_a_stranger_are_told_and_hold_no_memory() -> None:
+    """A worker reads for months, and names are what somebody sends."""
+    tracemalloc.start()
+    try:
+        long = [(f"{number} {'x' * 100_000} IA", "", "A") for number in range(50)]
+        assert roles(*long) == [(CURRENT, "a")] * len(long)
+        del long
+        held_bytes, _ = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert held_bytes < 1_000_000
