@@ -181,9 +181,12 @@ class _Loading:
         # RuntimeError: pebble's, whose cause is one of the others; or there is no thread left.
         except (OSError, EOFError, RuntimeError) as error:
             self.problem = f"the worker processes cannot be started: {_reason(error.__cause__ or error)}"
-        if self.pool is not None and (self.problem is not None or self._given_up.is_set()):
+        if self.pool is not None and self.problem is not None:
             _end(self.pool)  # some of its workers may have started
         self._over.set()
+        # Who gives up looks whether it is over, and here it is looked again: one of both ends the workers.
+        if self.pool is not None and self._given_up.is_set():
+            _end(self.pool)
         self._on_loaded()
 
     def _load(self) -> None:

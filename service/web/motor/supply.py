@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
+from core.motor_condition.supply import VOLTAGE_DEVIATION
 from service.client.rotor_and_supply import supply_words
 from service.storage import Repository
 from service.storage.records import SupplyEntry
@@ -53,6 +54,7 @@ def _chart(motor: str, every: Sequence[SupplyEntry], shown: TimeRange) -> Chart 
         ("distortion of the voltage", "THD", [one.thd_voltage for one in of_each], Tone.MODEL),
         ("unbalance of the currents", "I unbalance", [one.current_unbalance for one in of_each], Tone.MUTED),
     )
+    allowed = PERCENT * VOLTAGE_DEVIATION
     return Chart(
         key="supply",
         caption=f"Supply of {motor}",
@@ -65,7 +67,7 @@ def _chart(motor: str, every: Sequence[SupplyEntry], shown: TimeRange) -> Chart 
             Series(label, [_percent(value) for value in values], "%", tone, Kind.LINE, short=short)
             for label, short, values, tone in lines
         ],
-        bands=[Band(-10.0, 10.0, "voltage allowed (NEMA MG-1)")],
+        bands=[Band(-allowed, allowed, "voltage allowed (NEMA MG-1)")],
         limits=[Limit(1.0, "unbalance: derate from here on", Tone.WATCH)],
         x_from=shown.x_from,
         x_to=shown.x_to,

@@ -1,5 +1,6 @@
 """Workers that share a pipe, and let others go first."""
 
+import multiprocessing
 import os
 import signal
 from collections.abc import Callable, Iterator
@@ -74,6 +75,15 @@ def test_others_take_over_from_a_worker_that_is_killed_while_it_answers() -> Non
     with running_pool(prepare_for_short_waits) as pool:
         assert isinstance(pool.schedule(killed_on_the_way, 0, timeout_s=60).exception(30), ProcessExpired)
         wait_until(lambda: answers(pool), "a worker to do a task")
+
+
+def test_workers_that_still_load_end_with_their_pool() -> None:
+    pool = WorkerPool(2, prepare, is_ending=lambda: False)
+    pool.renew()
+    pool.stop()
+    with running_pool(prepare):  # the parent of both has forked what was asked of it before
+        assert len(multiprocessing.active_children()) >= 2
+    wait_until(lambda: not multiprocessing.active_children(), "the end of all workers")
 
 
 def test_workers_let_those_go_first_who_fetch_records() -> None:
